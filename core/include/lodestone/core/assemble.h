@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+#include <lodestone/core/result.h>
+
+namespace lodestone {
+
+/// Triangles as a file gives them: attributes belong to points, positions may repeat, anything may be broken.
+struct TriangleSoup {
+  std::vector<Vec3f> positions;       ///< one per point
+  std::vector<Attribute> attributes;  ///< each with one element per point
+  std::vector<Index> indices;         ///< three per triangle: points, < positions.size()
+  std::vector<Index> face_material;   ///< one per triangle, or empty
+};
+
+/// What `assemble` changed on the way from triangles to a manifold mesh; all zero for a clean file.
+struct AssemblyReport {
+  std::size_t nonfinite_faces = 0;      ///< dropped: a corner is NaN or infinite
+  std::size_t degenerate_faces = 0;     ///< dropped: two corners at one position
+  std::size_t duplicate_faces = 0;      ///< dropped: same corners, same winding as an earlier one
+  std::size_t unused_points = 0;        ///< dropped: no triangle uses them
+  std::size_t nonmanifold_edges = 0;    ///< cut: more than two triangles, or two that disagree on winding
+  std::size_t cut_vertices = 0;         ///< vertices that became several, one for each sheet
+};
+
+struct AssembledMesh {
+  Mesh mesh;
+  AssemblyReport report;
+};
+
+/// Builds a mesh whose vertices each have one fan of faces.
+///
+/// Points with equal coordinates become one vertex; points that also agree in every attribute byte become one wedge.
+/// Edges of more than two triangles and bow-tie vertices are cut: each sheet gets a vertex of its own, at the same
+/// position. `mesh_kinds` recognises those copies by their equal positions and locks them, so no crack can open.
+///
+/// Pre: array lengths agree. Errors: InvalidArgument where an index or a length is out of range. Cost: O(n log n).
+Result<AssembledMesh> assemble(const TriangleSoup& soup);
+
+/// Returns the soup with one point for each wedge: the inverse of `assemble`, up to order and what it dropped.
+TriangleSoup to_soup(const Mesh& mesh);
+
+}  // namespace lodestone

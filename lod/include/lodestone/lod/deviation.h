@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <lodestone/core/mesh.h>
+
+namespace lodestone {
+
+/// One direction of a comparison: the distances from one surface to the nearest points of the other, mesh units.
+struct OneSidedDeviation {
+  double maximum = 0;           ///< the largest distance found; a lower bound of the supremum
+  double maximum_bound = 0;     ///< an upper bound of the supremum, ≥ maximum
+  double mean = 0;              ///< over the area of the first surface
+  double rms = 0;               ///< over the area of the first surface
+  std::size_t sample_count = 0;
+};
+
+/// How two surfaces differ, both ways.
+struct Deviation {
+  OneSidedDeviation forward;        ///< from a to b
+  OneSidedDeviation backward;       ///< from b to a
+  double mean_normal_angle = 0;     ///< radians, between a's normal and b's at the nearest point, over a's area
+  double maximum() const { return forward.maximum > backward.maximum ? forward.maximum : backward.maximum; }
+  double maximum_bound() const {
+    return forward.maximum_bound > backward.maximum_bound ? forward.maximum_bound : backward.maximum_bound;
+  }
+};
+
+struct DeviationOptions {
+  std::size_t sample_count = 200'000;  ///< area samples for mean and rms, each way
+  double relative_tolerance = 0.001;   ///< maximum_bound ≤ maximum·(1 + this) + absolute_tolerance, where the budget allows
+  double absolute_tolerance = 0;       ///< mesh units; 0: 1e-7 of the diagonal
+  std::size_t budget = 4'000'000;      ///< nearest-point queries to spend on narrowing the maximum, each way
+};
+
+/// A surface prepared for nearest-point queries: a bounding-volume hierarchy over the faces of a mesh.
+class SurfaceIndex {
+ public:
+  /// Copies what it needs from `mesh`. Cost: O(n log n).
+  explicit SurfaceIndex(const Mesh& mesh);
+  ~SurfaceIndex();
+  SurfaceIndex(SurfaceIndex&&) noexcept;
+  SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
+
+  struct Hit {
+    double distance = 0;   ///< mesh units; infinity where the mesh has no faces or all lie farther than the limit
+    Vec3 point;            ///< the nearest point of the surface
+    Index face = kNoIndex; ///< the face it lies on
+  };
+  /// Returns the surface's nearest point to `p` among those no farther than `limit`; `hint` is a face likely near it.
+  Hit nearest(const Vec3& p, double limit, Index hint = kNoIndex) const;
+
+  bool empty() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Measures the deviation of two surfaces, both ways. Deterministic. Empty meshes deviate by infinity from others.
+Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options = {});
+
+/// Measures only the two-sided maximum, narrowed as `options` says; mean and rms stay 0.
+/// Stops early, with maximum_bound ≤ `enough`, where it can show that much: callers who need no more should say so.
+Deviation measure_maximum(const Mesh& a, const SurfaceIndex& a_index, const Mesh& b, const DeviationOptions& options,
+                          double enough = 0);
+
+}  // namespace lodestone
