@@ -1,0 +1,178 @@
+// The corner table after Rossignac, Safonova, Szymczak: 3D compression made simple: Edgebreaker on a corner table
+// (Shape Modeling International, 2001). Corners name wedges rather than vertices, so that seams need no extra table.
+
+#include <lodestone/core/connectivity.h>
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+namespace lodestone {
+namespace {
+
+struct HalfEdge {
+  std::uint64_t key;  // both vertices, the smaller one in the high half
+  Index corner;       // faces the edge
+};
+
+std::uint64_t edge_key(Index a, Index b) {
+  return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
+}
+
+}  // namespace
+
+Result<Connectivity> Connectivity::build(const Mesh& mesh) {
+  Connectivity result;
+  result.corner_wedge_ = mesh.corner_wedge;
+  result.opposite_.assign(mesh.corner_wedge.size(), kNoIndex);
+  result.vertex_corner_.assign(mesh.vertex_count(), kNoIndex);
+  result.wedge_vertex_ = &mesh.wedge_vertex;
+  result.face_material_ = &mesh.face_material;
+  result.face_count_ = mesh.face_count();
+  if (auto joined = result.join_faces(); !joined) return tl::unexpected(joined.error());
+  if (auto anchored = result.anchor_vertices(); !anchored) return tl::unexpected(anchored.error());
+  result.mark_copies(mesh);
+  return result;
+}
+
+Result<void> Connectivity::join_faces() {
+  std::vector<HalfEdge> edges(corner_wedge_.size());
+  for (Index c = 0; c < edges.size(); ++c) {
+    const Index a = vertex(next_corner(c));
+    const Index b = vertex(previous_corner(c));
+    if (a == b)
+      return fail(ErrorCode::InvalidArgument,
+                  "face " + std::to_string(face_of_corner(c)) + " repeats vertex " + std::to_string(a));
+    edges[c] = {edge_key(a, b), c};
+  }
+  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+    return a.key != b.key ? a.key < b.key : a.corner < b.corner;
+  });
+  for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
+    while (j < edges.size() && edges[j].key == edges[i].key) ++j;
+    // An edge of several faces, or of two that disagree on winding, stays a border of each.
+    if (j - i != 2 || vertex(next_corner(edges[i].corner)) == vertex(next_corner(edges[i + 1].corner))) continue;
+    opposite_[edges[i].corner] = edges[i + 1].corner;
+    opposite_[edges[i + 1].corner] = edges[i].corner;
+  }
+  return {};
+}
+
+Index Connectivity::first_corner(Index corner) const {
+  for (Index c = corner;;) {
+    const Index right = swing_right(c);
+    if (right == kNoIndex) return c;
+    if (right == corner) return corner;
+    c = right;
+  }
+}
+
+Result<void> Connectivity::anchor_vertices() {
+  std::vector<Index> corner_count(vertex_corner_.size(), 0);
+  for (Index c = 0; c < corner_wedge_.size(); ++c) {
+    const Index v = vertex(c);
+    ++corner_count[v];
+    if (vertex_corner_[v] == kNoIndex) vertex_corner_[v] = c;
+  }
+  Star star;
+  for (Index v = 0; v < vertex_corner_.size(); ++v) {
+    if (vertex_corner_[v] == kNoIndex) continue;
+    vertex_corner_[v] = first_corner(vertex_corner_[v]);
+    gather_star(v, star);
+    if (star.corners.size() != corner_count[v])
+      return fail(ErrorCode::InvalidArgument, "vertex " + std::to_string(v) + " has " +
+                                                  std::to_string(corner_count[v]) + " faces in more than one fan");
+  }
+  return {};
+}
+
+void Connectivity::mark_copies(const Mesh& mesh) {
+  is_copy_.assign(mesh.vertex_count(), 0);
+  const auto position_less = [&](Index a, Index b) {
+    const Vec3f& p = mesh.positions[a];
+    const Vec3f& q = mesh.positions[b];
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  };
+  std::vector<Index> order(mesh.vertex_count());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), position_less);
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (mesh.positions[order[i - 1]] == mesh.positions[order[i]]) is_copy_[order[i - 1]] = is_copy_[order[i]] = 1;
+
+  // A cut edge whose ends stayed single (where sheets or a one-sided strip close) is a border met twice.
+  std::vector<std::uint64_t> borders;
+  for (Index c = 0; c < corner_wedge_.size(); ++c)
+    if (opposite_[c] == kNoIndex) borders.push_back(edge_key(vertex(next_corner(c)), vertex(previous_corner(c))));
+  std::sort(borders.begin(), borders.end());
+  for (std::size_t i = 1; i < borders.size(); ++i)
+    if (borders[i - 1] == borders[i]) is_copy_[borders[i] >> 32] = is_copy_[borders[i] & kNoIndex] = 1;
+}
+
+bool Connectivity::is_constrained(Index corner) const {
+  const Index across = opposite_[corner];
+  if (across == kNoIndex || is_crease(corner)) return true;
+  return corner_wedge_[next_corner(corner)] != corner_wedge_[previous_corner(across)] ||
+         corner_wedge_[previous_corner(corner)] != corner_wedge_[next_corner(across)] ||
+         material(face_of_corner(corner)) != material(face_of_corner(across));
+}
+
+void Connectivity::mark_crease(Index corner) {
+  if (crease_.empty()) crease_.assign(corner_wedge_.size(), 0);
+  crease_[corner] = 1;
+  if (opposite_[corner] != kNoIndex) crease_[opposite_[corner]] = 1;
+}
+
+void Connectivity::gather_star(Index vertex, Star& star) const {
+  star.corners.clear();
+  star.sector_begin.clear();
+  const Index start = vertex_corner_[vertex];
+  assert(start != kNoIndex);
+  Index corner = start;
+  do {
+    star.corners.push_back(corner);
+    corner = swing_left(corner);
+  } while (corner != kNoIndex && corner != start);
+  star.closed = corner == start;
+
+  // The spoke before face i faces that face's previous corner.
+  const auto constrained_before = [&](Index c) { return is_constrained(previous_corner(c)); };
+  if (star.closed) {
+    const auto first = std::find_if(star.corners.begin(), star.corners.end(), constrained_before);
+    star.starts_constrained = first != star.corners.end();
+    if (star.starts_constrained) std::rotate(star.corners.begin(), first, star.corners.end());
+  } else {
+    star.starts_constrained = true;
+  }
+  star.sector_begin.push_back(0);
+  if (!star.starts_constrained) return;
+  for (Index i = 1; i < star.corners.size(); ++i)
+    if (constrained_before(star.corners[i])) star.sector_begin.push_back(i);
+}
+
+VertexKind Connectivity::kind(Index vertex) const {
+  if (!has_vertex(vertex)) return VertexKind::Isolated;
+  Star star;
+  gather_star(vertex, star);
+  return kind(vertex, star);
+}
+
+VertexKind Connectivity::kind(Index vertex, const Star& star) const {
+  if (is_copy_[vertex] != 0) return VertexKind::NonManifold;
+  if (star.is_plain()) return VertexKind::Interior;
+  if (!star.closed) return star.sector_count() == 1 ? VertexKind::Border : VertexKind::Corner;
+  return star.sector_count() == 2 ? VertexKind::Feature : VertexKind::Corner;
+}
+
+bool Connectivity::has_edge(Index a, Index b) const {
+  const Index start = vertex_corner_[a];
+  for (Index corner = start; corner != kNoIndex;) {
+    if (vertex(next_corner(corner)) == b || vertex(previous_corner(corner)) == b) return true;
+    corner = swing_left(corner);
+    if (corner == start) break;
+  }
+  return false;
+}
+
+}  // namespace lodestone

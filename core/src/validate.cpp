@@ -1,0 +1,106 @@
+#include <lodestone/core/validate.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace lodestone {
+namespace {
+
+auto defect(const std::string& message) { return fail(ErrorCode::InvalidArgument, message); }
+
+Result<void> check_face(const Connectivity& mesh, Index face) {
+  const Index a = mesh.vertex(3 * face);
+  const Index b = mesh.vertex(3 * face + 1);
+  const Index c = mesh.vertex(3 * face + 2);
+  if (a == b || b == c || a == c) return defect("face " + std::to_string(face) + " repeats a vertex");
+  return {};
+}
+
+Result<void> check_opposite(const Connectivity& mesh, Index corner) {
+  const Index across = mesh.opposite(corner);
+  if (across == kNoIndex) return {};
+  const std::string name = "corner " + std::to_string(corner);
+  if (across >= 3 * mesh.face_slot_count() || !mesh.has_face(face_of_corner(across)))
+    return defect(name + " faces corner " + std::to_string(across) + ", which no face has");
+  if (mesh.opposite(across) != corner) return defect(name + " faces " + std::to_string(across) + ", but not back");
+  if (mesh.vertex(next_corner(corner)) != mesh.vertex(previous_corner(across)) ||
+      mesh.vertex(previous_corner(corner)) != mesh.vertex(next_corner(across)))
+    return defect(name + " and " + std::to_string(across) + " do not share an edge");
+  return {};
+}
+
+Result<void> check_edges(const Connectivity& mesh) {
+  std::vector<std::pair<std::uint64_t, Index>> edges;
+  for (Index c = 0; c < 3 * mesh.face_slot_count(); ++c) {
+    if (!mesh.has_face(face_of_corner(c))) continue;
+    const Index from = mesh.vertex(next_corner(c));
+    const Index to = mesh.vertex(previous_corner(c));
+    // An edge that was cut where sheets meet stays a border on every side; only joined edges have to be unique.
+    if (mesh.opposite(c) != kNoIndex) edges.emplace_back(std::uint64_t{from} << 32 | to, c);
+  }
+  std::sort(edges.begin(), edges.end());
+  const auto twice =
+      std::adjacent_find(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (twice != edges.end())
+    return defect("edge from vertex " + std::to_string(twice->first >> 32) + " to " +
+                  std::to_string(twice->first & kNoIndex) + " appears twice");
+  return {};
+}
+
+Result<void> check_fans(const Connectivity& mesh) {
+  std::vector<Index> corner_count(mesh.vertex_count(), 0);
+  for (Index c = 0; c < 3 * mesh.face_slot_count(); ++c)
+    if (mesh.has_face(face_of_corner(c))) ++corner_count[mesh.vertex(c)];
+  Star star;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    const std::string name = "vertex " + std::to_string(v);
+    if (!mesh.has_vertex(v)) {
+      if (corner_count[v] != 0) return defect(name + " is gone but has " + std::to_string(corner_count[v]) + " faces");
+      continue;
+    }
+    const Index anchor = mesh.corner_at(v);
+    if (!mesh.has_face(face_of_corner(anchor)) || mesh.vertex(anchor) != v)
+      return defect(name + " is anchored at corner " + std::to_string(anchor) + ", which is not its own");
+    mesh.gather_star(v, star);
+    if (star.corners.size() != corner_count[v]) return defect(name + " has more than one fan of faces");
+    if (!star.closed && mesh.swing_right(anchor) != kNoIndex) return defect(name + " is not anchored at its border");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> validate(const Mesh& mesh) {
+  if (mesh.corner_wedge.size() % 3 != 0)
+    return defect("corner count " + std::to_string(mesh.corner_wedge.size()) + " is not a multiple of 3");
+  if (!mesh.face_material.empty() && mesh.face_material.size() != mesh.face_count())
+    return defect("material count " + std::to_string(mesh.face_material.size()) + " differs from face count " +
+                  std::to_string(mesh.face_count()));
+  for (std::size_t w = 0; w < mesh.wedge_count(); ++w)
+    if (mesh.wedge_vertex[w] >= mesh.vertex_count())
+      return defect("wedge " + std::to_string(w) + " names vertex " + std::to_string(mesh.wedge_vertex[w]) + " of " +
+                    std::to_string(mesh.vertex_count()));
+  for (std::size_t c = 0; c < mesh.corner_wedge.size(); ++c)
+    if (mesh.corner_wedge[c] >= mesh.wedge_count())
+      return defect("corner " + std::to_string(c) + " names wedge " + std::to_string(mesh.corner_wedge[c]) + " of " +
+                    std::to_string(mesh.wedge_count()));
+  for (const Attribute& attribute : mesh.attributes)
+    if (attribute.data.size() != attribute.element_bytes() * mesh.wedge_count())
+      return defect("attribute " + attribute.name + " has " + std::to_string(attribute.data.size()) + " bytes for " +
+                    std::to_string(mesh.wedge_count()) + " wedges");
+  return {};
+}
+
+Result<void> validate(const Connectivity& mesh) {
+  for (Index f = 0; f < mesh.face_slot_count(); ++f) {
+    if (!mesh.has_face(f)) continue;
+    if (auto ok = check_face(mesh, f); !ok) return ok;
+    for (Index c = 3 * f; c < 3 * f + 3; ++c)
+      if (auto ok = check_opposite(mesh, c); !ok) return ok;
+  }
+  if (auto ok = check_edges(mesh); !ok) return ok;
+  return check_fans(mesh);
+}
+
+}  // namespace lodestone

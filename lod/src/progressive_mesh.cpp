@@ -1,0 +1,180 @@
+#include <lodestone/lod/progressive_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace lodestone {
+namespace {
+
+auto defect(const std::string& message) { return fail(ErrorCode::Malformed, message); }
+
+std::string numbered(const char* thing, std::size_t i) { return std::string(thing) + " " + std::to_string(i); }
+
+Index appended_faces(const SectorHeader& sector) { return sector.closed != 0 ? 2 : 1; }
+
+template <class T>
+Index coarsest_within(const std::vector<T>& errors, double limit) {
+  const auto found = std::find_if(errors.begin(), errors.end(), [&](T e) { return static_cast<double>(e) <= limit; });
+  if (errors.empty()) return 0;
+  return static_cast<Index>(found == errors.end() ? errors.size() - 1 : found - errors.begin());
+}
+
+Result<void> expect_size(const char* name, std::size_t size, std::size_t expected) {
+  if (size == expected) return {};
+  return defect(std::string(name) + " has " + std::to_string(size) + " entries where " + std::to_string(expected) +
+                " are due");
+}
+
+/// Checks that a prefix-sum array starts at `first`, never falls and ends at `last`.
+template <class T>
+Result<void> expect_offsets(const char* name, const std::vector<T>& offsets, std::uint64_t first, std::uint64_t last) {
+  if (offsets.empty() || offsets.front() != first || offsets.back() != last || !std::is_sorted(offsets.begin(), offsets.end()))
+    return defect(std::string(name) + " does not rise from " + std::to_string(first) + " to " + std::to_string(last));
+  return {};
+}
+
+/// Runs checks in turn and returns the first failure.
+Result<void> first_failure(std::initializer_list<Result<void>> checks) {
+  for (const Result<void>& check : checks)
+    if (!check) return check;
+  return {};
+}
+
+Result<void> check_arrays(const ProgressiveMesh& mesh) {
+  const std::size_t records = mesh.record_count();
+  if (mesh.sector_begin.empty() || mesh.polygon_begin.empty()) return defect("record arrays are empty");
+  if (auto ok = first_failure({
+          expect_size("polygon_begin", mesh.polygon_begin.size(), mesh.sectors.size() + 1),
+          expect_size("record_wedge_begin", mesh.record_wedge_begin.size(), records + 1),
+          expect_size("deviation", mesh.deviation.size(), records + 1),
+          expect_size("curvature_error", mesh.curvature_error.size(), records + 1),
+          expect_size("positions", mesh.positions.size(), mesh.base_vertex_count + records),
+          expect_offsets("sector_begin", mesh.sector_begin, 0, mesh.sectors.size()),
+          expect_offsets("polygon_begin", mesh.polygon_begin, 0, mesh.polygons.size()),
+          expect_offsets("record_wedge_begin", mesh.record_wedge_begin, mesh.base_wedge_count, mesh.wedge_vertex.size()),
+          expect_offsets("round_begin", mesh.round_begin, 0, records),
+      });
+      !ok)
+    return ok;
+  if (mesh.polygons.size() < 2 * mesh.sectors.size()) return defect("sectors have polygons of fewer than 2 corners");
+  const std::size_t slots = mesh.polygons.size() - 2 * mesh.sectors.size();
+  if (auto ok = expect_size("slots", mesh.slots.size(), slots); !ok) return ok;
+  if (auto ok = expect_size("triangles", mesh.triangles.size(), 3 * slots); !ok) return ok;
+  for (const Attribute& attribute : mesh.attributes)
+    if (attribute.component_count == 0 || attribute.data.size() != attribute.element_bytes() * mesh.wedge_vertex.size())
+      return defect("attribute " + attribute.name + " has " + std::to_string(attribute.data.size()) + " bytes for " +
+                    std::to_string(mesh.wedge_vertex.size()) + " wedges");
+  return {};
+}
+
+Result<void> check_values(const ProgressiveMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3f& p = mesh.positions[v];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      return defect(numbered("vertex", v) + " has a position that is not finite");
+  }
+  for (std::size_t p = 0; p < mesh.deviation.size(); ++p)
+    if (!(mesh.deviation[p] >= 0) || !(mesh.curvature_error[p] >= 0))
+      return defect(numbered("position", p) + " has an error that is negative or not a number");
+  for (std::size_t w = 0; w < mesh.base_wedge_count; ++w)
+    if (mesh.wedge_vertex[w] >= mesh.base_vertex_count)
+      return defect(numbered("wedge", w) + " of the base mesh names vertex " + std::to_string(mesh.wedge_vertex[w]) +
+                    " of " + std::to_string(mesh.base_vertex_count));
+  for (std::size_t k = 0; k < mesh.record_count(); ++k)
+    for (Index w = mesh.record_wedge_begin[k]; w < mesh.record_wedge_begin[k + 1]; ++w)
+      if (mesh.wedge_vertex[w] != mesh.base_vertex_count + k)
+        return defect(numbered("wedge", w) + " of record " + std::to_string(k) + " names vertex " +
+                      std::to_string(mesh.wedge_vertex[w]));
+  return {};
+}
+
+Result<void> check_base(const ProgressiveMesh& mesh) {
+  if (mesh.groups.empty()) return defect("mesh has no face group");
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
+    const std::vector<Index>& corners = mesh.groups[g].base_corners;
+    if (corners.size() % 3 != 0) return defect(numbered("group", g) + " has an incomplete base face");
+    const auto beyond =
+        std::find_if(corners.begin(), corners.end(), [&](Index wedge) { return wedge >= mesh.base_wedge_count; });
+    if (beyond != corners.end())
+      return defect(numbered("group", g) + " of the base mesh names wedge " + std::to_string(*beyond) + " of " +
+                    std::to_string(mesh.base_wedge_count));
+  }
+  return {};
+}
+
+Result<void> check_sector(const ProgressiveMesh& mesh, std::size_t record, std::size_t s,
+                          std::vector<std::uint64_t>& face_count) {
+  const SectorHeader& sector = mesh.sectors[s];
+  const std::string name = numbered("record", record);
+  const std::uint64_t size = mesh.polygon_begin[s + 1] - mesh.polygon_begin[s];
+  if (size != sector.polygon_size || size < (sector.closed != 0 ? 3U : 2U) || sector.closed > 1)
+    return defect(name + " has a polygon of " + std::to_string(size) + " corners");
+  if (sector.group >= mesh.groups.size()) return defect(name + " names " + numbered("group", sector.group));
+  if (sector.wedge >= mesh.record_wedge_begin[record + 1] - mesh.record_wedge_begin[record])
+    return defect(name + " names its " + numbered("wedge", sector.wedge));
+  for (std::uint64_t i = mesh.polygon_begin[s]; i < mesh.polygon_begin[s + 1]; ++i)
+    if (mesh.polygons[i] >= mesh.record_wedge_begin[record])
+      return defect(name + " names wedge " + std::to_string(mesh.polygons[i]) + " before it exists");
+  for (std::uint64_t i = mesh.slot_begin(s); i < mesh.slot_begin(s) + size - 2; ++i) {
+    if (mesh.slots[i] >= face_count[sector.group])
+      return defect(name + " names face " + std::to_string(mesh.slots[i]) + " of " +
+                    std::to_string(face_count[sector.group]));
+    const std::uint8_t* t = &mesh.triangles[3 * i];
+    if (!(t[0] < t[1] && t[1] < t[2] && t[2] < size)) return defect(name + " has a triangle outside its polygon");
+  }
+  return {};
+}
+
+Result<void> check_records(const ProgressiveMesh& mesh) {
+  std::vector<std::uint64_t> face_count;
+  for (const FaceGroup& group : mesh.groups) face_count.push_back(group.base_corners.size() / 3);
+  for (std::size_t k = 0; k < mesh.record_count(); ++k) {
+    for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s)
+      if (auto ok = check_sector(mesh, k, s, face_count); !ok) return ok;
+    for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s)
+      face_count[mesh.sectors[s].group] += appended_faces(mesh.sectors[s]);
+  }
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g)
+    if (face_count[g] != mesh.groups[g].face_count)
+      return defect(numbered("group", g) + " ends with " + std::to_string(face_count[g]) + " faces where " +
+                    std::to_string(mesh.groups[g].face_count) + " are due");
+  return {};
+}
+
+}  // namespace
+
+std::vector<Index> face_counts(const ProgressiveMesh& mesh) {
+  Index count = 0;
+  for (const FaceGroup& group : mesh.groups) count += static_cast<Index>(group.base_corners.size() / 3);
+  std::vector<Index> counts{count};
+  counts.reserve(mesh.record_count() + 1);
+  for (std::size_t k = 0; k < mesh.record_count(); ++k) {
+    for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s) count += appended_faces(mesh.sectors[s]);
+    counts.push_back(count);
+  }
+  return counts;
+}
+
+Index position_for_deviation(const ProgressiveMesh& mesh, double deviation) {
+  return coarsest_within(mesh.deviation, deviation);
+}
+
+Index position_for_curvature_error(const ProgressiveMesh& mesh, double epsilon) {
+  return coarsest_within(mesh.curvature_error, epsilon);
+}
+
+Index position_for_faces(const ProgressiveMesh& mesh, std::uint64_t face_count) {
+  const std::vector<Index> counts = face_counts(mesh);
+  const auto beyond = std::upper_bound(counts.begin(), counts.end(), face_count);
+  return beyond == counts.begin() ? 0 : static_cast<Index>(beyond - counts.begin() - 1);
+}
+
+Result<void> validate(const ProgressiveMesh& mesh) {
+  if (auto ok = check_arrays(mesh); !ok) return ok;
+  if (auto ok = check_values(mesh); !ok) return ok;
+  if (auto ok = check_base(mesh); !ok) return ok;
+  return check_records(mesh);
+}
+
+}  // namespace lodestone

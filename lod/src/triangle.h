@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+
+#include <lodestone/core/vec.h>
+
+namespace lodestone::detail {
+
+/// Returns the point of the segment a b nearest to `p`; any of the two where they coincide.
+inline Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 e = b - a;
+  const double ee = squared_length(e);
+  if (!(ee > 0)) return a;
+  const double t = dot(p - a, e);
+  if (t <= 0) return a;
+  if (t >= ee) return b;
+  return a + e * (t / ee);
+}
+
+/// A triangle with the float corners of the mesh; computed with in doubles.
+struct Triangle {
+  Vec3f a, b, c;
+};
+
+/// Returns the nearest point to `p` of a triangle, which may be as thin as a segment or a point.
+///
+/// Where p lies above the inside of all three edges the foot of the perpendicular is the answer; elsewhere the answer
+/// is on an edge that p lies outside of. Each test uses the normal, the one quantity that keeps its accuracy in thin
+/// triangles: tests by barycentric coordinates cancel there and name points far from the nearest.
+inline Vec3 nearest_on_triangle(const Vec3& p, const Triangle& triangle) {
+  const Vec3 a(triangle.a), b(triangle.b), c(triangle.c);
+  const Vec3 n = cross(b - a, c - a);
+  const Vec3 pa = p - a, pb = p - b, pc = p - c;
+  const bool outside_ab = dot(cross(b - a, pa), n) <= 0;
+  const bool outside_bc = dot(cross(c - b, pb), n) <= 0;
+  const bool outside_ca = dot(cross(a - c, pc), n) <= 0;
+  if (!outside_ab && !outside_bc && !outside_ca) return p - n * (dot(pa, n) / squared_length(n));
+
+  Vec3 best = a;
+  double best_squared = squared_length(pa);
+  const auto consider = [&](bool outside, const Vec3& from, const Vec3& to) {
+    if (!outside) return;
+    const Vec3 q = nearest_on_segment(p, from, to);
+    const double squared = squared_length(p - q);
+    if (squared < best_squared) best = q, best_squared = squared;
+  };
+  consider(outside_ab, a, b);
+  consider(outside_bc, b, c);
+  consider(outside_ca, c, a);
+  return best;
+}
+
+}  // namespace lodestone::detail
