@@ -9,31 +9,24 @@
 namespace lodestone {
 namespace {
 
-void add_corner(const Mesh& mesh, const Connectivity& connectivity, Index corner,
-                std::vector<VertexCurvature>& curvatures) {
-  const Vec3 p = mesh.corner_position(corner);
-  const Vec3 a = mesh.corner_position(next_corner(corner)) - p;
-  const Vec3 b = mesh.corner_position(previous_corner(corner)) - p;
-  VertexCurvature& at = curvatures[connectivity.vertex(corner)];
-  at.gaussian -= angle_between(a, b);
-  at.area += length(cross(a, b)) / 6;
+Vec3 position(const Mesh& mesh, const Connectivity& connectivity, Index corner) {
+  return Vec3(mesh.positions[connectivity.vertex(corner)]);
 }
 
-Vec3 face_normal(const Mesh& mesh, Index corner) {
-  const Vec3 p = mesh.corner_position(corner);
-  return cross(mesh.corner_position(next_corner(corner)) - p, mesh.corner_position(previous_corner(corner)) - p);
+/// The normal of a corner's face, twice the face's area long.
+Vec3 corner_normal(const Mesh& mesh, const Connectivity& connectivity, Index corner) {
+  const Vec3 p = position(mesh, connectivity, corner);
+  return cross(position(mesh, connectivity, next_corner(corner)) - p,
+               position(mesh, connectivity, previous_corner(corner)) - p);
 }
 
-void add_edge(const Mesh& mesh, const Connectivity& connectivity, Index corner,
-              std::vector<VertexCurvature>& curvatures) {
+/// The dihedral share of the edge facing `corner`: ¼ |e|·|β|; 0 at a border.
+double edge_share(const Mesh& mesh, const Connectivity& connectivity, Index corner) {
   const Index across = connectivity.opposite(corner);
-  if (across == kNoIndex || across < corner) return;  // each edge once
-  const Index a = next_corner(corner);
-  const Index b = previous_corner(corner);
-  const double angle = angle_between(face_normal(mesh, corner), face_normal(mesh, across));
-  const double share = 0.25 * length(mesh.corner_position(b) - mesh.corner_position(a)) * angle;
-  curvatures[connectivity.vertex(a)].mean += share;
-  curvatures[connectivity.vertex(b)].mean += share;
+  if (across == kNoIndex) return 0;
+  const double angle = angle_between(corner_normal(mesh, connectivity, corner), corner_normal(mesh, connectivity, across));
+  return 0.25 * angle *
+         length(position(mesh, connectivity, previous_corner(corner)) - position(mesh, connectivity, next_corner(corner)));
 }
 
 }  // namespace
@@ -43,18 +36,27 @@ double principal_curvature(const VertexCurvature& curvature) {
   return 2 * std::sqrt(curvature.mean * curvature.mean - curvature.gaussian * curvature.area);
 }
 
+VertexCurvature vertex_curvature(const Mesh& mesh, const Connectivity& connectivity, VertexId vertex) {
+  VertexCurvature result;
+  const Index start = connectivity.corner_at(index_of(vertex));
+  if (start == kNoIndex) return result;
+  Index corner = start;
+  do {
+    const Vec3 p = position(mesh, connectivity, corner);
+    const Vec3 a = position(mesh, connectivity, next_corner(corner)) - p;
+    const Vec3 b = position(mesh, connectivity, previous_corner(corner)) - p;
+    result.gaussian -= angle_between(a, b);
+    result.area += length(cross(a, b)) / 6;
+    result.mean += edge_share(mesh, connectivity, previous_corner(corner));
+    corner = connectivity.swing_left(corner);
+  } while (corner != kNoIndex && corner != start);
+  result.gaussian += corner == kNoIndex ? std::numbers::pi : 2 * std::numbers::pi;
+  return result;
+}
+
 std::vector<VertexCurvature> vertex_curvatures(const Mesh& mesh, const Connectivity& connectivity) {
   std::vector<VertexCurvature> curvatures(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    if (!connectivity.has_vertex(v)) continue;
-    const bool closed = connectivity.swing_right(connectivity.corner_at(v)) != kNoIndex;
-    curvatures[v].gaussian = closed ? 2 * std::numbers::pi : std::numbers::pi;
-  }
-  for (Index c = 0; c < 3 * connectivity.face_slot_count(); ++c) {
-    if (!connectivity.has_face(face_of_corner(c))) continue;
-    add_corner(mesh, connectivity, c, curvatures);
-    add_edge(mesh, connectivity, c, curvatures);
-  }
+  for (Index v = 0; v < mesh.vertex_count(); ++v) curvatures[v] = vertex_curvature(mesh, connectivity, VertexId{v});
   return curvatures;
 }
 

@@ -52,10 +52,14 @@ class SurfaceIndex {
   /// Returns the surface's nearest point to `p` among those no farther than `limit`; `hint` is a face likely near it.
   Hit nearest(const Vec3& p, double limit, Index hint = kNoIndex) const;
 
+  /// Returns the distance from `p` to one face; pre: `face` is one of the mesh's.
+  double distance_to_face(const Vec3& p, Index face) const;
+
   bool empty() const;
 
+  struct Impl;  ///< opaque
+
  private:
-  struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 

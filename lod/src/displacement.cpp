@@ -1,0 +1,146 @@
+// The bound comes from a map between the two surfaces, after Cohen, Manocha, Olano: Simplifying polygonal models using
+// successive mappings (Visualization 1997). Both are projected to a plane; where neither folds there, the overlay of
+// their edges cuts them into cells on which both are linear, so the largest displacement stands at a corner of a cell:
+// at the removed vertex or where a spoke crosses a diagonal. On an open sector the removed vertex first slides to its
+// foot on the closing edge. Where the projection folds, a cruder map is bounded by edge lengths.
+
+#include "displacement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "point_triangle.h"
+
+namespace lodestone::detail {
+namespace {
+
+struct Vec2 {
+  double x = 0;
+  double y = 0;
+};
+
+double cross2(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// A sector's polygon and centre, in space and in the plane of projection.
+struct Overlay {
+  const SectorPatch& sector;
+  Vec3 center;
+  Vec3 anchor;  // where the centre goes: itself, or its foot on the closing edge
+  std::vector<Vec3> ring;
+  std::vector<Vec2> plane_ring;
+  Vec2 plane_center;
+
+  std::size_t next(std::size_t i) const { return i + 1 < ring.size() ? i + 1 : 0; }
+};
+
+Vec3 foot_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double square = squared_length(b - a);
+  return square > 0 ? a + (b - a) * std::clamp(dot(p - a, b - a) / square, 0.0, 1.0) : a;
+}
+
+Overlay make_overlay(const Mesh& mesh, const SectorPatch& sector, const Vec3& center) {
+  Overlay overlay{sector, center, center, {}, {}, {}};
+  for (const Index wedge : sector.polygon) overlay.ring.push_back(Vec3(mesh.positions[mesh.wedge_vertex[wedge]]));
+  if (!sector.closed) overlay.anchor = foot_on_segment(center, overlay.ring.back(), overlay.ring.front());
+  Vec3 normal;
+  for (std::size_t i = 0; i < overlay.ring.size(); ++i)
+    normal += cross(overlay.ring[i] - overlay.anchor, overlay.ring[overlay.next(i)] - overlay.anchor);
+  normal = normalized(normal);
+  const Vec3 axis = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 u = normalized(cross(axis, normal));
+  const Vec3 w = cross(normal, u);
+  const auto project = [&](const Vec3& p) { return Vec2{dot(p - center, u), dot(p - center, w)}; };
+  for (const Vec3& p : overlay.ring) overlay.plane_ring.push_back(project(p));
+  overlay.plane_center = project(overlay.anchor);
+  return overlay;
+}
+
+bool folds(const Overlay& overlay) {
+  for (std::size_t i = 0; i < overlay.sector.face_count(); ++i)
+    if (!(cross2(overlay.plane_center, overlay.plane_ring[i], overlay.plane_ring[overlay.next(i)]) >= 0)) return true;
+  return std::any_of(overlay.sector.triangles.begin(), overlay.sector.triangles.end(), [&](PolygonTriangle t) {
+    return !(cross2(overlay.plane_ring[t.a], overlay.plane_ring[t.b], overlay.plane_ring[t.c]) > 0);
+  });
+}
+
+/// The distance from the centre to the coarse surface's point over or under its anchor.
+double center_displacement(const Overlay& overlay) {
+  if (!overlay.sector.closed) return length(overlay.center - overlay.anchor);
+  double best_inside = -std::numeric_limits<double>::infinity();
+  Vec3 target;
+  for (const PolygonTriangle t : overlay.sector.triangles) {
+    const std::array<std::size_t, 3> c{t.a, t.b, t.c};
+    const double area = cross2(overlay.plane_ring[c[0]], overlay.plane_ring[c[1]], overlay.plane_ring[c[2]]);
+    std::array<double, 3> weight{};
+    for (std::size_t i = 0; i < 3; ++i)
+      weight[i] = cross2(overlay.plane_center, overlay.plane_ring[c[(i + 1) % 3]], overlay.plane_ring[c[(i + 2) % 3]]) / area;
+    const double inside = *std::min_element(weight.begin(), weight.end());
+    if (inside <= best_inside) continue;
+    best_inside = inside;
+    target = overlay.ring[c[0]] * weight[0] + overlay.ring[c[1]] * weight[1] + overlay.ring[c[2]] * weight[2];
+  }
+  return length(overlay.center - target);
+}
+
+/// The distance between a spoke and a diagonal where their projections cross; 0 where they do not.
+double crossing_displacement(const Overlay& overlay, std::size_t spoke, std::size_t a, std::size_t b) {
+  const Vec2& c = overlay.plane_center;
+  const Vec2& r = overlay.plane_ring[spoke];
+  const Vec2& p = overlay.plane_ring[a];
+  const Vec2& q = overlay.plane_ring[b];
+  const double from = cross2(p, q, c);
+  const double to = cross2(p, q, r);
+  const double left = cross2(c, r, p);
+  const double right = cross2(c, r, q);
+  if (from * to > 0 || left * right > 0 || from == to || left == right) return 0;
+  const double s = from / (from - to);
+  const double t = left / (left - right);
+  const Vec3 on_spoke = overlay.center + (overlay.ring[spoke] - overlay.center) * s;
+  const Vec3 on_diagonal = overlay.ring[a] + (overlay.ring[b] - overlay.ring[a]) * t;
+  return length(on_spoke - on_diagonal);
+}
+
+double overlay_displacement(const Overlay& overlay) {
+  double largest = center_displacement(overlay);
+  const std::size_t size = overlay.ring.size();
+  for (const PolygonTriangle t : overlay.sector.triangles) {
+    for (const auto& [a, b] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.a, t.c}}) {
+      const bool is_rim = b == a + 1 || (a == 0 && b + 1U == size);
+      for (std::size_t spoke = 0; spoke < size && !is_rim; ++spoke)
+        if (spoke != a && spoke != b) largest = std::max(largest, crossing_displacement(overlay, spoke, a, b));
+    }
+  }
+  return largest;
+}
+
+/// Any fine point lies within its spoke's length of the rim, any coarse point within its edge's length of a corner.
+double length_bound(const Overlay& overlay) {
+  double largest = 0;
+  for (const Vec3& p : overlay.ring) largest = std::max(largest, length(p - overlay.center));
+  for (const PolygonTriangle t : overlay.sector.triangles)
+    for (const auto& [a, b] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.a, t.c}})
+      largest = std::max(largest, length(overlay.ring[a] - overlay.ring[b]));
+  return largest;
+}
+
+}  // namespace
+
+double displacement_bound(const Mesh& mesh, const RemovalRecord& record) {
+  const Vec3 center(mesh.positions[record.vertex]);
+  double largest = 0;
+  for (const SectorPatch& sector : record.sectors) {
+    const Overlay overlay = make_overlay(mesh, sector, center);
+    const double bound = sector.polygon.size() == 2
+                             ? std::sqrt(squared_distance_to_segment(center, overlay.ring[0], overlay.ring[1]))
+                             : (folds(overlay) ? length_bound(overlay) : overlay_displacement(overlay));
+    largest = std::max(largest, bound);
+  }
+  return largest;
+}
+
+}  // namespace lodestone::detail

@@ -1,0 +1,192 @@
+// Branch and bound over both surfaces (see supremum.cpp), with bounds that outlive a level. Backward, from the level to
+// the original, a face's bound stays true for as long as the face exists, since the original does not change. Forward,
+// a vertex of the original keeps the face it was near until a removal takes that face away; then its distance is at
+// most the old one and what the surface moved.
+
+#include <lodestone/lod/level_deviation.h>
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "supremum.h"
+#include "triple_table.h"
+
+namespace lodestone {
+namespace {
+
+using detail::Anchor;
+using detail::Goal;
+using detail::SupremumSearch;
+using detail::SurfaceBounds;
+using detail::Triple;
+using detail::TripleTable;
+
+Triple bits_of(const Vec3f& p) {
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0f); };  // The sum makes −0 equal to 0.
+  return {bits(p.x), bits(p.y), bits(p.z)};
+}
+
+/// What names the faces of the original and of its levels alike: sorted corners, in the original's vertices.
+class FaceNames {
+ public:
+  explicit FaceNames(const Mesh& original) : vertex_at_(original.vertex_count()), vertex_count_(original.vertex_count()) {
+    for (Index v = 0; v < vertex_count_; ++v) vertex_at_.insert(bits_of(original.positions[v]), v);
+  }
+
+  /// Returns the original's vertex at each vertex of `mesh`; elsewhere a number that no other vertex has.
+  std::vector<Index> vertices_of(const Mesh& mesh) const {
+    std::vector<Index> names(mesh.vertex_count());
+    for (Index v = 0; v < names.size(); ++v) {
+      const Index found = vertex_at_.find(bits_of(mesh.positions[v]));
+      names[v] = found != kNoIndex ? found : static_cast<Index>(vertex_count_ + v);
+    }
+    return names;
+  }
+
+  bool is_original(Index vertex_name) const { return vertex_name < vertex_count_; }
+
+ private:
+  TripleTable vertex_at_;
+  std::size_t vertex_count_;
+};
+
+Triple face_name(const Mesh& mesh, const std::vector<Index>& vertex_names, Index face) {
+  Triple name;
+  for (Index i = 0; i < 3; ++i) name[i] = vertex_names[mesh.corner_vertex(3 * face + i)];
+  std::sort(name.begin(), name.end());
+  return name;
+}
+
+}  // namespace
+
+struct LevelDeviation::Impl {
+  Impl(const Mesh& mesh, const DeviationOptions& options_);
+
+  Deviation measure(const Mesh& level, double moved, double enough);
+  void forget();
+  SurfaceBounds inherit(const Mesh& level, double moved);
+  void carry_anchors(const std::vector<Index>& face_now, double moved);
+  void anchor_common_vertices(const Mesh& level, const std::vector<Index>& names, SurfaceBounds& backward);
+  void start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const;
+
+  const Mesh& original;
+  DeviationOptions options;
+  SurfaceIndex index;
+  FaceNames names;
+  TripleTable original_faces;
+  std::vector<Index> face_at;         // A face at each of the original's vertices, by name; kNoIndex: none.
+  SurfaceBounds forward;              // Of the original, to the last level.
+
+  TripleTable level_faces;            // Of the last level.
+  std::vector<double> level_bounds;   // Of the last level's faces, to the original.
+  Vec3 farthest_point;                // Of the original, from the last level.
+  Index farthest_face = kNoIndex;     // Of the level, from the original; as numbered now.
+  double farthest_distance = 0;       // Of farthest_face.
+};
+
+LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
+    : original(mesh),
+      options(options_),
+      index(mesh),
+      names(mesh),
+      original_faces(mesh.face_count()),
+      face_at(mesh.vertex_count(), kNoIndex),
+      forward(mesh) {
+  const std::vector<Index> vertex_names = names.vertices_of(mesh);
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Triple name = face_name(mesh, vertex_names, f);
+    original_faces.insert(name, f);
+    for (const Index v : name) {
+      if (face_at[v] == kNoIndex) face_at[v] = f;
+    }
+  }
+  if (mesh.face_count() > 0) farthest_point = mesh.corner_position(0);
+}
+
+/// Carries what is known over to a new level; returns what is known of the level's own faces.
+SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
+  const std::vector<Index> vertex_names = names.vertices_of(level);
+  for (double& bound : forward.faces) bound += moved;
+  SurfaceBounds backward(level);
+  TripleTable faces_now(level.face_count());
+  std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.
+  for (Index f = 0; f < level.face_count(); ++f) {
+    const Triple name = face_name(level, vertex_names, f);
+    faces_now.insert(name, f);
+    if (const Index before = level_faces.find(name); before != kNoIndex) {
+      face_now[before] = f;
+      backward.faces[f] = level_bounds[before];
+    }
+    if (const Index same = original_faces.find(name); same != kNoIndex) forward.faces[same] = backward.faces[f] = 0;
+  }
+  carry_anchors(face_now, moved);
+  anchor_common_vertices(level, vertex_names, backward);
+  level_faces = std::move(faces_now);
+  if (farthest_face != kNoIndex) farthest_face = face_now[farthest_face];
+  return backward;
+}
+
+void LevelDeviation::Impl::carry_anchors(const std::vector<Index>& face_now, double moved) {
+  for (Anchor& anchor : forward.vertices) {
+    anchor.exact = false;
+    if (anchor.face != kNoIndex) anchor.face = face_now[anchor.face];
+    if (anchor.face == kNoIndex) anchor.distance += moved;
+  }
+}
+
+/// Where the level kept a vertex, the surfaces meet.
+void LevelDeviation::Impl::anchor_common_vertices(const Mesh& level, const std::vector<Index>& vertex_names,
+                                                  SurfaceBounds& backward) {
+  for (Index corner = 0; corner < level.corner_wedge.size(); ++corner) {
+    const Index v = level.corner_vertex(corner);
+    const Index name = vertex_names[v];
+    if (!names.is_original(name) || face_at[name] == kNoIndex) continue;
+    forward.vertices[name] = {0, face_of_corner(corner), true};
+    backward.vertices[v] = {0, face_at[name], true};
+  }
+}
+
+/// Raises the goal at once to where the last level's maximum suggests.
+void LevelDeviation::Impl::start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const {
+  forward_search.probe(farthest_point, goal);
+  if (farthest_face != kNoIndex) backward_search.assume(farthest_face, farthest_distance, goal);
+}
+
+Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double enough) {
+  const SurfaceIndex level_index(level);
+  SurfaceBounds backward = inherit(level, moved);
+  SupremumSearch forward_search(original, level_index, forward);
+  SupremumSearch backward_search(level, index, backward);
+  Goal goal = detail::goal_of(options, original, level, enough);
+  start(forward_search, backward_search, goal);
+  const Deviation result = detail::narrow_both(forward_search, backward_search, goal, options.budget);
+  if (forward_search.largest_distance() > 0) farthest_point = forward_search.farthest_point();
+  farthest_face = backward_search.farthest_face();
+  farthest_distance = backward_search.largest_distance();
+  level_bounds = std::move(backward.faces);
+  return result;
+}
+
+void LevelDeviation::Impl::forget() {
+  forward = SurfaceBounds(original);
+  level_faces = TripleTable();
+  level_bounds.clear();
+  farthest_face = kNoIndex;
+}
+
+LevelDeviation::LevelDeviation(const Mesh& original, const DeviationOptions& options)
+    : impl_(std::make_unique<Impl>(original, options)) {}
+LevelDeviation::~LevelDeviation() = default;
+LevelDeviation::LevelDeviation(LevelDeviation&&) noexcept = default;
+LevelDeviation& LevelDeviation::operator=(LevelDeviation&&) noexcept = default;
+
+Deviation LevelDeviation::measure(const Mesh& level, double moved, double enough) {
+  if (impl_->original.face_count() == 0 || level.face_count() == 0) {
+    impl_->forget();
+    return detail::maximum_of_empty(impl_->original, level);
+  }
+  return impl_->measure(level, moved, enough);
+}
+
+}  // namespace lodestone

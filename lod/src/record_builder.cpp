@@ -1,0 +1,167 @@
+#include "record_builder.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "canonical_face.h"
+
+namespace lodestone::detail {
+
+/// New numbers of the full mesh's wedges, vertices and faces; faces are numbered within their group.
+struct RecordBuilder::Numbering {
+  std::vector<Index> vertex;
+  std::vector<Index> wedge;
+  std::vector<Index> face;
+  std::vector<Index> source_wedge;  // by new number
+  std::vector<Index> group_face_count;
+};
+
+RecordBuilder::RecordBuilder(const Mesh& mesh) : mesh_(&mesh), materials_(mesh.face_material) {
+  std::sort(materials_.begin(), materials_.end());
+  materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
+  if (materials_.empty()) materials_.push_back(0);
+}
+
+Index RecordBuilder::group_of(Index face) const {
+  const auto found = std::lower_bound(materials_.begin(), materials_.end(), mesh_->material_of(face));
+  return static_cast<Index>(found - materials_.begin());
+}
+
+void RecordBuilder::add(const RemovalRecord& record, double curvature_error) {
+  vertex_.push_back(record.vertex);
+  curvature_error_.push_back(static_cast<float>(curvature_error));
+  for (const SectorPatch& sector : record.sectors) {
+    center_.push_back(sector.center);
+    closed_.push_back(sector.closed ? 1 : 0);
+    polygons_.insert(polygons_.end(), sector.polygon.begin(), sector.polygon.end());
+    polygon_begin_.push_back(polygons_.size());
+    faces_.insert(faces_.end(), sector.faces.begin(), sector.faces.end());
+    face_begin_.push_back(faces_.size());
+    triangles_.insert(triangles_.end(), sector.triangles.begin(), sector.triangles.end());
+  }
+  sector_begin_.push_back(center_.size());
+}
+
+void RecordBuilder::end_round() {
+  if (round_end_.empty() ? !vertex_.empty() : round_end_.back() < vertex_.size()) round_end_.push_back(vertex_.size());
+}
+
+void RecordBuilder::number_base(const Connectivity& base, ProgressiveMesh& result, Numbering& numbers) const {
+  numbers.vertex.assign(mesh_->vertex_count(), kNoIndex);
+  numbers.wedge.assign(mesh_->wedge_count(), kNoIndex);
+  numbers.face.assign(mesh_->face_count(), kNoIndex);
+  numbers.group_face_count.assign(materials_.size(), 0);
+  for (Index v = 0; v < mesh_->vertex_count(); ++v) {
+    if (!base.has_vertex(v)) continue;
+    numbers.vertex[v] = static_cast<Index>(result.positions.size());
+    result.positions.push_back(mesh_->positions[v]);
+  }
+  result.base_vertex_count = static_cast<Index>(result.positions.size());
+  for (Index w = 0; w < mesh_->wedge_count(); ++w)
+    if (numbers.vertex[mesh_->wedge_vertex[w]] != kNoIndex) numbers.source_wedge.push_back(w);
+  std::stable_sort(numbers.source_wedge.begin(), numbers.source_wedge.end(), [&](Index a, Index b) {
+    return numbers.vertex[mesh_->wedge_vertex[a]] < numbers.vertex[mesh_->wedge_vertex[b]];
+  });
+  for (Index i = 0; i < numbers.source_wedge.size(); ++i) {
+    numbers.wedge[numbers.source_wedge[i]] = i;
+    result.wedge_vertex.push_back(numbers.vertex[mesh_->wedge_vertex[numbers.source_wedge[i]]]);
+  }
+  result.base_wedge_count = static_cast<Index>(result.wedge_vertex.size());
+  for (std::size_t g = 0; g < materials_.size(); ++g) result.groups.push_back({materials_[g], 0, {}});
+  for (Index f = 0; f < base.face_slot_count(); ++f) {
+    if (!base.has_face(f)) continue;
+    const Index group = group_of(f);
+    numbers.face[f] = numbers.group_face_count[group]++;
+    Index corners[3];
+    write_canonical(corners, numbers.wedge[base.wedge(3 * f)], numbers.wedge[base.wedge(3 * f + 1)],
+                    numbers.wedge[base.wedge(3 * f + 2)]);
+    result.groups[group].base_corners.insert(result.groups[group].base_corners.end(), corners, corners + 3);
+  }
+}
+
+void RecordBuilder::number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const {
+  const auto vertex = static_cast<Index>(result.positions.size());
+  numbers.vertex[vertex_[removal]] = vertex;
+  result.positions.push_back(mesh_->positions[vertex_[removal]]);
+  for (std::size_t s = sector_begin_[removal]; s < sector_begin_[removal + 1]; ++s) {
+    Index& wedge = numbers.wedge[center_[s]];
+    if (wedge == kNoIndex) {
+      wedge = static_cast<Index>(result.wedge_vertex.size());
+      result.wedge_vertex.push_back(vertex);
+      numbers.source_wedge.push_back(center_[s]);
+    }
+    const std::size_t kept = polygon_begin_[s + 1] - polygon_begin_[s] - 2;
+    for (std::size_t i = face_begin_[s] + kept; i < face_begin_[s + 1]; ++i)
+      numbers.face[faces_[i]] = numbers.group_face_count[group_of(faces_[i])]++;
+  }
+}
+
+void RecordBuilder::write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const {
+  const Index first_wedge = result.record_wedge_begin.back();
+  for (std::size_t s = sector_begin_[removal]; s < sector_begin_[removal + 1]; ++s) {
+    const std::size_t size = polygon_begin_[s + 1] - polygon_begin_[s];
+    SectorHeader header;
+    header.polygon_size = static_cast<std::uint16_t>(size);
+    header.group = static_cast<std::uint16_t>(group_of(faces_[face_begin_[s]]));
+    header.closed = closed_[s];
+    header.wedge = static_cast<std::uint8_t>(numbers.wedge[center_[s]] - first_wedge);
+    result.sectors.push_back(header);
+    for (std::size_t i = 0; i < size; ++i)
+      result.polygons.push_back(numbers.wedge[polygons_[polygon_begin_[s] + i]]);
+    result.polygon_begin.push_back(result.polygons.size());
+    const std::size_t first_triangle = polygon_begin_[s] - 2 * s;
+    for (std::size_t i = 0; i + 2 < size; ++i) {
+      result.slots.push_back(numbers.face[faces_[face_begin_[s] + i]]);
+      const PolygonTriangle t = triangles_[first_triangle + i];
+      result.triangles.insert(result.triangles.end(), {t.a, t.b, t.c});
+    }
+  }
+  result.sector_begin.push_back(static_cast<Index>(result.sectors.size()));
+  result.record_wedge_begin.push_back(static_cast<Index>(result.wedge_vertex.size()));
+}
+
+void RecordBuilder::write_errors(ProgressiveMesh& result, const std::vector<float>& deviation) const {
+  const std::size_t count = vertex_.size();
+  result.deviation.assign(count + 1, 0);
+  result.curvature_error.assign(count + 1, 0);
+  float largest = 0;
+  for (std::size_t removal = 0; removal < count; ++removal) {
+    largest = std::max(largest, curvature_error_[removal]);
+    result.curvature_error[count - 1 - removal] = largest;
+    result.deviation[count - 1 - removal] = deviation[removal];
+  }
+  result.round_begin.push_back(0);
+  for (std::size_t r = round_end_.size(); r > 1; --r)
+    result.round_begin.push_back(static_cast<Index>(count - round_end_[r - 2]));
+  if (count > 0) result.round_begin.push_back(static_cast<Index>(count));
+}
+
+void RecordBuilder::copy_attributes(ProgressiveMesh& result, const Numbering& numbers) const {
+  for (const Attribute& attribute : mesh_->attributes) {
+    Attribute& copy = result.attributes.emplace_back(
+        Attribute{attribute.name, attribute.type, attribute.component_count, attribute.normalized, {}});
+    const std::size_t bytes = attribute.element_bytes();
+    copy.data.resize(bytes * numbers.source_wedge.size());
+    for (std::size_t w = 0; w < numbers.source_wedge.size(); ++w)
+      std::memcpy(&copy.data[w * bytes], &attribute.data[numbers.source_wedge[w] * bytes], bytes);
+  }
+}
+
+ProgressiveMesh RecordBuilder::finish(const Connectivity& base, const std::vector<float>& deviation) {
+  ProgressiveMesh result;
+  Numbering numbers;
+  number_base(base, result, numbers);
+  result.sector_begin.push_back(0);
+  result.polygon_begin.push_back(0);
+  result.record_wedge_begin.push_back(result.base_wedge_count);
+  for (std::size_t removal = vertex_.size(); removal-- > 0;) {
+    number_record(removal, result, numbers);
+    write_record(removal, result, numbers);
+  }
+  for (std::size_t g = 0; g < result.groups.size(); ++g) result.groups[g].face_count = numbers.group_face_count[g];
+  write_errors(result, deviation);
+  copy_attributes(result, numbers);
+  return result;
+}
+
+}  // namespace lodestone::detail

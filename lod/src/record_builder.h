@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include <lodestone/core/connectivity.h>
+#include <lodestone/core/removal.h>
+#include <lodestone/lod/progressive_mesh.h>
+
+namespace lodestone::detail {
+
+/// Collects removals as they happen and turns them into a progressive mesh, renumbered in order of creation.
+class RecordBuilder {
+ public:
+  explicit RecordBuilder(const Mesh& mesh);
+
+  void add(const RemovalRecord& record, double curvature_error);
+  /// Ends the round that the removals since the last call belong to.
+  void end_round();
+  std::size_t size() const { return vertex_.size(); }
+
+  /// Builds the result; `base` is what the removals left, `deviation` holds one entry for each removal, in order.
+  ProgressiveMesh finish(const Connectivity& base, const std::vector<float>& deviation);
+
+ private:
+  struct Numbering;
+  Index group_of(Index face) const;
+  void number_base(const Connectivity& base, ProgressiveMesh& result, Numbering& numbers) const;
+  void number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const;
+  void write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const;
+  void write_errors(ProgressiveMesh& result, const std::vector<float>& deviation) const;
+  void copy_attributes(ProgressiveMesh& result, const Numbering& numbers) const;
+
+  const Mesh* mesh_;
+  std::vector<Index> materials_;  // of the groups, ascending
+
+  // In order of removal, with the numbers of the full mesh.
+  std::vector<Index> vertex_;
+  std::vector<float> curvature_error_;
+  std::vector<std::size_t> round_end_;
+  std::vector<std::size_t> sector_begin_{0};
+  std::vector<Index> center_;
+  std::vector<std::uint8_t> closed_;
+  std::vector<std::size_t> polygon_begin_{0};
+  std::vector<Index> polygons_;
+  std::vector<std::size_t> face_begin_{0};
+  std::vector<Index> faces_;
+  std::vector<PolygonTriangle> triangles_;
+};
+
+}  // namespace lodestone::detail

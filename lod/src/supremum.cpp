@@ -1,0 +1,256 @@
+// The supremum of the distance from a triangle mesh to a surface by branch and bound, in the spirit of
+// M. Tang, M. Lee, Y. J. Kim, "Interactive Hausdorff distance computation for general polygonal models", ACM
+// Transactions on Graphics 28(3), 2009, and of M. Guthe, P. Borodin, R. Klein, "Fast and accurate Hausdorff distance
+// calculation between meshes", Journal of WSCG 13(2), 2005.
+//
+// The bound of a piece rests on one fact: the distance to a *convex* set is a convex function, so that its largest
+// value over a piece is at a corner. Any single face therefore bounds the whole piece. Where no single face will do,
+// the piece is cut in two, each half bounded by a face of its own; the cut goes where the two distances agree, which on
+// a plane is their common edge and between two planes their bisector.
+
+#include "supremum.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace lodestone::detail {
+namespace {
+
+/// Covers rounding: far above that of a distance, far below any tolerance.
+constexpr double kRoundingSlack = 1 + 1e-12;
+
+using Corners = std::array<PieceCorner, 3>;
+using Distances = std::array<double, 3>;  // From the three corners to one face.
+
+bool same_face(const Corners& c) {
+  return c[0].face != kNoIndex && c[0].face == c[1].face && c[0].face == c[2].face;
+}
+
+double largest(const Distances& d) { return std::max({d[0], d[1], d[2]}); }
+
+/// The bound from the corners' distances alone, which grow by no more than the way from a corner.
+double bound_by_length(const Corners& c) {
+  const double e01 = length(c[0].point - c[1].point);
+  const double e12 = length(c[1].point - c[2].point);
+  const double e20 = length(c[2].point - c[0].point);
+  // No point of a triangle is farther from its nearest corner than the circumradius of the equilateral one.
+  const double reach = std::max({e01, e12, e20}) / std::numbers::sqrt3;
+  const double from_nearest = std::max({c[0].distance, c[1].distance, c[2].distance}) + reach;
+  return std::min({from_nearest, c[0].distance + std::max(e01, e20), c[1].distance + std::max(e01, e12),
+                   c[2].distance + std::max(e12, e20)});
+}
+
+Distances distances_to(const Corners& c, Index face, const SurfaceIndex& to) {
+  Distances d;
+  for (std::size_t i = 0; i < 3; ++i) {
+    d[i] = c[i].face == face ? c[i].distance : to.distance_to_face(c[i].point, face);
+  }
+  return d;
+}
+
+/// Where a difference that is `from` at one end and `towards`, of the other sign, at the other end vanishes.
+double zero_between(double from, double towards) {
+  const double range = from - towards;
+  return range != 0 ? std::clamp(from / range, 0.0, 1.0) : 0.5;
+}
+
+/// Bounds a piece cut in two along the line where its distances to the faces g and h seem to agree.
+double bound_by_cut(const Corners& c, Index g, const Distances& to_g, Index h, const Distances& to_h,
+                    const SurfaceIndex& to) {
+  const std::array<bool, 3> at_g = {to_g[0] <= to_h[0], to_g[1] <= to_h[1], to_g[2] <= to_h[2]};
+  double bound = 0;
+  for (std::size_t i = 0; i < 3; ++i) bound = std::max(bound, std::min(to_g[i], to_h[i]));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if (at_g[i] == at_g[j]) continue;
+    const double t = zero_between(to_g[i] - to_h[i], to_g[j] - to_h[j]);
+    const Vec3 cut = c[i].point + (c[j].point - c[i].point) * t;
+    bound = std::max({bound, to.distance_to_face(cut, g), to.distance_to_face(cut, h)});
+  }
+  return bound;
+}
+
+}  // namespace
+
+double bound_piece(const Corners& c, const SurfaceIndex& to, double target) {
+  if (same_face(c)) return largest({c[0].distance, c[1].distance, c[2].distance});
+  double bound = bound_by_length(c);
+  std::array<Distances, 3> rows;
+  for (std::size_t j = 0; j < 3 && bound > target; ++j) {
+    if (c[j].face == kNoIndex) continue;
+    rows[j] = distances_to(c, c[j].face, to);
+    bound = std::min(bound, largest(rows[j]));
+  }
+  for (std::size_t j = 0; j < 3 && bound > target; ++j) {
+    const std::size_t k = (j + 1) % 3;
+    if (c[j].face == kNoIndex || c[k].face == kNoIndex || c[j].face == c[k].face) continue;
+    const std::size_t third = (j + 2) % 3;
+    if (std::min(rows[j][third], rows[k][third]) >= bound) continue;
+    bound = std::min(bound, bound_by_cut(c, c[j].face, rows[j], c[k].face, rows[k], to));
+  }
+  return bound;
+}
+
+SupremumSearch::SupremumSearch(const Mesh& from, const SurfaceIndex& to, SurfaceBounds& bounds)
+    : from_(from), to_(to), bounds_(bounds) {}
+
+void SupremumSearch::visit_vertices(Goal& goal) {
+  const Index count = static_cast<Index>(from_.face_count());
+  for (Index face = 0; face < count; ++face) {
+    if (bounds_.faces[face] > goal.threshold()) visit_face(face, goal);
+  }
+}
+
+void SupremumSearch::visit_face(Index face, Goal& goal) {
+  do {
+    const double bound = bound_piece(corners_of(face), to_, goal.threshold());
+    bounds_.faces[face] = std::min(bounds_.faces[face], bound);
+  } while (bounds_.faces[face] > goal.threshold() && query_one_vertex(face, goal));
+}
+
+/// Finds the nearest face of one of the face's vertices; false where all are known.
+bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
+  Index hint = kNoIndex;
+  Index vertex = kNoIndex;
+  for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
+    const Index v = from_.corner_vertex(corner);
+    if (!bounds_.vertices[v].exact) vertex = v;
+    if (bounds_.vertices[v].face != kNoIndex) hint = bounds_.vertices[v].face;
+  }
+  if (vertex == kNoIndex) return false;
+  const PieceCorner nearest = query(Vec3(from_.positions[vertex]), hint, face, goal);
+  bounds_.vertices[vertex] = {nearest.distance, nearest.face, true};
+  return true;
+}
+
+PieceCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
+  const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
+  const PieceCorner corner{point, hit.distance, hit.face};
+  if (hit.distance > largest_distance_) {
+    assume(from_face, hit.distance, goal);
+    farthest_point_ = point;
+  }
+  return corner;
+}
+
+void SupremumSearch::assume(Index face, double distance, Goal& goal) {
+  largest_distance_ = distance;
+  farthest_face_ = face;
+  goal.found = std::max(goal.found, distance);
+}
+
+OneSidedDeviation SupremumSearch::result() const {
+  OneSidedDeviation result;
+  result.maximum = largest_distance_;
+  result.maximum_bound = std::max(bounds_.maximum(), largest_distance_) * kRoundingSlack;
+  return result;
+}
+
+Corners SupremumSearch::corners_of(Index face) const {
+  Corners corners;
+  for (Index i = 0; i < 3; ++i) {
+    const Index vertex = from_.corner_vertex(3 * face + i);
+    const Anchor& anchor = bounds_.vertices[vertex];
+    corners[i] = {Vec3(from_.positions[vertex]), anchor.distance, anchor.face};
+  }
+  return corners;
+}
+
+void SupremumSearch::split_faces(Goal& goal, std::size_t budget) {
+  const Index count = static_cast<Index>(from_.face_count());
+  for (Index face = 0; face < count; ++face) {
+    if (bounds_.faces[face] > goal.threshold()) add_face(face, goal);
+  }
+  for (; budget > 0 && !heap_.empty() && heap_.front().bound > goal.threshold(); --budget) split(pop(), goal);
+  for (const Piece& piece : heap_) bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
+  heap_.clear();
+  corners_.clear();
+}
+
+/// Turns a face into a piece; from here on the face's bound is the largest of its finished pieces.
+void SupremumSearch::add_face(Index face, Goal& goal) {
+  while (query_one_vertex(face, goal)) {
+  }
+  const Index first = static_cast<Index>(corners_.size());
+  const Corners corners = corners_of(face);
+  corners_.insert(corners_.end(), corners.begin(), corners.end());
+  const double bound = bounds_.faces[face];
+  bounds_.faces[face] = 0;
+  add_piece({bound, {}, face}, {first, first + 1, first + 2}, goal);
+}
+
+void SupremumSearch::add_piece(const Piece& parent, const std::array<Index, 3>& corners, const Goal& goal) {
+  const double target = goal.threshold();
+  const double bound =
+      bound_piece({corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]}, to_, target);
+  const Piece piece{std::min(bound, parent.bound), corners, parent.face};
+  if (piece.bound > target) {
+    push(piece);
+  } else {
+    bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
+  }
+}
+
+/// Halves a piece across its longest edge.
+void SupremumSearch::split(const Piece& piece, Goal& goal) {
+  std::size_t longest = 0;
+  double longest_squared = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 edge = corners_[piece.corners[(i + 1) % 3]].point - corners_[piece.corners[i]].point;
+    if (squared_length(edge) > longest_squared) longest = i, longest_squared = squared_length(edge);
+  }
+  const Index a = piece.corners[longest];
+  const Index b = piece.corners[(longest + 1) % 3];
+  const Index c = piece.corners[(longest + 2) % 3];
+  const Index middle = static_cast<Index>(corners_.size());
+  const Vec3 point = (corners_[a].point + corners_[b].point) * 0.5;
+  corners_.push_back(query(point, corners_[a].face, piece.face, goal));
+  add_piece(piece, {a, middle, c}, goal);
+  add_piece(piece, {middle, b, c}, goal);
+}
+
+void SupremumSearch::push(const Piece& piece) {
+  heap_.push_back(piece);
+  std::push_heap(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.bound < b.bound; });
+}
+
+SupremumSearch::Piece SupremumSearch::pop() {
+  std::pop_heap(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.bound < b.bound; });
+  const Piece piece = heap_.back();
+  heap_.pop_back();
+  return piece;
+}
+
+Goal goal_of(const DeviationOptions& options, const Mesh& a, const Mesh& b, double enough) {
+  Goal goal;
+  goal.relative_tolerance = options.relative_tolerance;
+  goal.absolute_tolerance = options.absolute_tolerance;
+  if (!(goal.absolute_tolerance > 0)) {
+    goal.absolute_tolerance = 1e-7 * std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
+  }
+  goal.enough = enough;
+  return goal;
+}
+
+Deviation narrow_both(SupremumSearch& forward, SupremumSearch& backward, Goal goal, std::size_t budget) {
+  // Vertices first, both ways: what they find raises the threshold before anything is split.
+  forward.visit_vertices(goal);
+  backward.visit_vertices(goal);
+  forward.split_faces(goal, budget);
+  backward.split_faces(goal, budget);
+  Deviation result;
+  result.forward = forward.result();
+  result.backward = backward.result();
+  return result;
+}
+
+Deviation maximum_of_empty(const Mesh& a, const Mesh& b) {
+  Deviation result;
+  if (a.face_count() == 0 && b.face_count() == 0) return result;
+  result.forward.maximum = result.forward.maximum_bound = kUnbounded;
+  result.backward = result.forward;
+  return result;
+}
+
+}  // namespace lodestone::detail
