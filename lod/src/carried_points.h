@@ -10,7 +10,8 @@ namespace lodestone::detail {
 /// The memory of the removed surface: points of the full mesh, each carried by the face that now stands for it.
 ///
 /// Points are the original faces' centroids, from the start, and every vertex from its removal on. A list is kept for
-/// each face slot; points 0 … vertex_count − 1 are vertices, the rest centroids.
+/// each face slot; points 0 … vertex_count − 1 are vertices, the rest centroids. A point's weight says how many it
+/// stands for.
 class CarriedPoints {
  public:
   explicit CarriedPoints(const Mesh& mesh);
@@ -24,6 +25,8 @@ class CarriedPoints {
     next_[point] = first_[face];
     first_[face] = point;
   }
+  float weight(Index point) const { return weight_[point]; }
+  void set_weight(Index point, float weight) { weight_[point] = weight; }
   void clear(Index face) { first_[face] = kNoIndex; }
 
  private:
@@ -32,6 +35,7 @@ class CarriedPoints {
   std::vector<Vec3f> centroids_;
   std::vector<Index> first_;
   std::vector<Index> next_;
+  std::vector<float> weight_;
 };
 
 }  // namespace lodestone::detail

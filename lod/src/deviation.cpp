@@ -13,6 +13,7 @@ namespace lodestone {
 namespace {
 
 using detail::Goal;
+using detail::PatchBound;
 using detail::SupremumSearch;
 using detail::SurfaceBounds;
 
@@ -77,10 +78,11 @@ double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_in
 }
 
 /// Narrows one direction's maximum on its own; leaves mean and rms as they are.
-void narrow_maximum(const Mesh& from, const SurfaceIndex& to, const DeviationOptions& options, Goal goal,
-                    OneSidedDeviation& result) {
-  SurfaceBounds bounds(from);
-  SupremumSearch search(from, to, bounds);
+void narrow_maximum(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, const DeviationOptions& options,
+                    Goal goal, OneSidedDeviation& result) {
+  SurfaceBounds bounds(from, false);
+  PatchBound to_patch(to);
+  SupremumSearch search(from, to_index, to_patch, bounds);
   search.visit_vertices(goal);
   search.split_faces(goal, options.budget);
   const OneSidedDeviation narrowed = search.result();
@@ -106,8 +108,8 @@ Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions
   Deviation result;
   result.mean_normal_angle = measure_means(a, b, b_index, options.sample_count, result.forward);
   measure_means(b, a, a_index, options.sample_count, result.backward);
-  narrow_maximum(a, b_index, options, goal, result.forward);
-  narrow_maximum(b, a_index, options, goal, result.backward);
+  narrow_maximum(a, b, b_index, options, goal, result.forward);
+  narrow_maximum(b, a, a_index, options, goal, result.backward);
   return result;
 }
 
@@ -115,9 +117,10 @@ Deviation measure_maximum(const Mesh& a, const SurfaceIndex& a_index, const Mesh
                           double enough) {
   if (a.face_count() == 0 || b.face_count() == 0) return detail::maximum_of_empty(a, b);
   const SurfaceIndex b_index(b);
-  SurfaceBounds a_bounds(a), b_bounds(b);
-  SupremumSearch forward(a, b_index, a_bounds);
-  SupremumSearch backward(b, a_index, b_bounds);
+  SurfaceBounds a_bounds(a, false), b_bounds(b, false);
+  PatchBound a_patch(a), b_patch(b);
+  SupremumSearch forward(a, b_index, b_patch, a_bounds);
+  SupremumSearch backward(b, a_index, a_patch, b_bounds);
   return detail::narrow_both(forward, backward, detail::goal_of(options, a, b, enough), options.budget);
 }
 

@@ -17,10 +17,13 @@ namespace {
 
 using detail::Anchor;
 using detail::Goal;
+using detail::PatchBound;
 using detail::SupremumSearch;
 using detail::SurfaceBounds;
+using detail::Triangle;
 using detail::Triple;
 using detail::TripleTable;
+using detail::Witnesses;
 
 Triple bits_of(const Vec3f& p) {
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0f); };  // The sum makes −0 equal to 0.
@@ -67,12 +70,16 @@ struct LevelDeviation::Impl {
   void forget();
   SurfaceBounds inherit(const Mesh& level, double moved);
   void carry_anchors(const std::vector<Index>& face_now, double moved);
+  void carry_bounds(const std::vector<Index>& face_now, double moved);
   void anchor_common_vertices(const Mesh& level, const std::vector<Index>& names, SurfaceBounds& backward);
+  void bound_new_faces(const Mesh& level, const Goal& goal, SurfaceBounds& backward);
+  void anchor_at(Index vertex, const Triangle& triangle, Index face);
   void start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const;
 
   const Mesh& original;
   DeviationOptions options;
   SurfaceIndex index;
+  PatchBound patch;
   FaceNames names;
   TripleTable original_faces;
   std::vector<Index> face_at;         // A face at each of the original's vertices, by name; kNoIndex: none.
@@ -89,10 +96,11 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
     : original(mesh),
       options(options_),
       index(mesh),
+      patch(mesh),
       names(mesh),
       original_faces(mesh.face_count()),
       face_at(mesh.vertex_count(), kNoIndex),
-      forward(mesh) {
+      forward(mesh, true) {
   const std::vector<Index> vertex_names = names.vertices_of(mesh);
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triple name = face_name(mesh, vertex_names, f);
@@ -107,10 +115,10 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
 /// Carries what is known over to a new level; returns what is known of the level's own faces.
 SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
   const std::vector<Index> vertex_names = names.vertices_of(level);
-  for (double& bound : forward.faces) bound += moved;
-  SurfaceBounds backward(level);
+  SurfaceBounds backward(level, false);
   TripleTable faces_now(level.face_count());
   std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.
+  std::vector<Index> same_face(level.face_count());                // The original's face for each of the level's.
   for (Index f = 0; f < level.face_count(); ++f) {
     const Triple name = face_name(level, vertex_names, f);
     faces_now.insert(name, f);
@@ -118,9 +126,15 @@ SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
       face_now[before] = f;
       backward.faces[f] = level_bounds[before];
     }
-    if (const Index same = original_faces.find(name); same != kNoIndex) forward.faces[same] = backward.faces[f] = 0;
+    same_face[f] = original_faces.find(name);
   }
   carry_anchors(face_now, moved);
+  carry_bounds(face_now, moved);
+  for (Index f = 0; f < level.face_count(); ++f) {
+    if (same_face[f] == kNoIndex) continue;
+    backward.faces[f] = 0;
+    forward.lower(same_face[f], 0, std::array{f});
+  }
   anchor_common_vertices(level, vertex_names, backward);
   level_faces = std::move(faces_now);
   if (farthest_face != kNoIndex) farthest_face = face_now[farthest_face];
@@ -132,6 +146,18 @@ void LevelDeviation::Impl::carry_anchors(const std::vector<Index>& face_now, dou
     anchor.exact = false;
     if (anchor.face != kNoIndex) anchor.face = face_now[anchor.face];
     if (anchor.face == kNoIndex) anchor.distance += moved;
+  }
+}
+
+void LevelDeviation::Impl::carry_bounds(const std::vector<Index>& face_now, double moved) {
+  for (std::size_t f = 0; f < forward.faces.size(); ++f) {
+    Witnesses& witness = forward.witnesses[f];
+    if (witness.known()) {
+      for (Index& face : witness.faces) face = face_now[face];
+    }
+    if (std::find(witness.faces.begin(), witness.faces.end(), kNoIndex) == witness.faces.end()) continue;
+    witness = {};
+    forward.faces[f] += moved;
   }
 }
 
@@ -147,6 +173,33 @@ void LevelDeviation::Impl::anchor_common_vertices(const Mesh& level, const std::
   }
 }
 
+/// Bounds the level's new faces by the patches of the original they stand for, and takes those patches' vertices, which
+/// have lost the faces they were near, as near the new ones.
+void LevelDeviation::Impl::bound_new_faces(const Mesh& level, const Goal& goal, SurfaceBounds& backward) {
+  std::vector<bool> lost(forward.vertices.size());
+  for (std::size_t v = 0; v < lost.size(); ++v) lost[v] = forward.vertices[v].face == kNoIndex;
+  for (Index f = 0; f < level.face_count(); ++f) {
+    const Index start = backward.vertices[level.corner_vertex(3 * f)].face;
+    if (backward.faces[f] <= goal.threshold() || start == kNoIndex) continue;
+    const Triangle triangle = detail::triangle_of(level, f);
+    backward.faces[f] = patch.bound({Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)}, start, goal.threshold(),
+                                    goal.patch_slack());
+    for (const Index g : patch.patch()) {
+      for (Index corner = 3 * g; corner < 3 * g + 3; ++corner) {
+        const Index v = original.corner_vertex(corner);
+        if (lost[v]) anchor_at(v, triangle, f);
+      }
+    }
+  }
+}
+
+void LevelDeviation::Impl::anchor_at(Index vertex, const Triangle& triangle, Index face) {
+  Anchor& anchor = forward.vertices[vertex];
+  const Vec3 p(original.positions[vertex]);
+  const double distance = length(p - detail::nearest_on_triangle(p, triangle));
+  if (anchor.face == kNoIndex || distance < anchor.distance) anchor = {distance, face, false};
+}
+
 /// Raises the goal at once to where the last level's maximum suggests.
 void LevelDeviation::Impl::start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const {
   forward_search.probe(farthest_point, goal);
@@ -156,10 +209,12 @@ void LevelDeviation::Impl::start(SupremumSearch& forward_search, SupremumSearch&
 Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double enough) {
   const SurfaceIndex level_index(level);
   SurfaceBounds backward = inherit(level, moved);
-  SupremumSearch forward_search(original, level_index, forward);
-  SupremumSearch backward_search(level, index, backward);
+  PatchBound level_patch(level);
+  SupremumSearch forward_search(original, level_index, level_patch, forward);
+  SupremumSearch backward_search(level, index, patch, backward);
   Goal goal = detail::goal_of(options, original, level, enough);
   start(forward_search, backward_search, goal);
+  bound_new_faces(level, goal, backward);
   const Deviation result = detail::narrow_both(forward_search, backward_search, goal, options.budget);
   if (forward_search.largest_distance() > 0) farthest_point = forward_search.farthest_point();
   farthest_face = backward_search.farthest_face();
@@ -169,7 +224,7 @@ Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double 
 }
 
 void LevelDeviation::Impl::forget() {
-  forward = SurfaceBounds(original);
+  forward = SurfaceBounds(original, true);
   level_faces = TripleTable();
   level_bounds.clear();
   farthest_face = kNoIndex;

@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kMinNormalCosine = 0.2;     // a new face may turn this far from the old one at its rim
 constexpr double kMinShape = 1e-3;           // a new face's height over its longest edge
-constexpr std::size_t kFullyRanked = 6;      // triangulations, by swept volume, that are measured in full
-constexpr double kLineWeight = 1.0;          // of a border's or feature line's own displacement
+constexpr std::size_t kFullyRanked = 3;      // triangulations, by swept volume, whose distances are measured      // triangulations, by swept volume, that are measured in full
+constexpr double kLineWeight = 1;            // of a border's or feature line's own displacement
+constexpr double kTieBreak = 0.2;             // weight of the volume swept, as a length, against a pure curvature error
 constexpr double kMinCurvatureChange = 1e-4; // radians; below it curvature no longer separates removals
 
 double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
@@ -33,13 +34,16 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
   table_.resize(kTriangleNumberCount);
+  // Ties are broken on the metric's own scale: K̄ is an angle, the others are lengths.
+  const double diagonal = bounding_box(state.mesh).diagonal();
+  tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
 }
 
-Evaluation RemovalEvaluator::evaluate(Index vertex, RemovalRecord& record) {
+Evaluation RemovalEvaluator::evaluate(Index vertex, RemovalRecord& record, Choice& choice) {
   if (const Verdict verdict = gather(vertex, record); rejects(verdict)) return {verdict};
   if (const Verdict verdict = check_closing_edge(); rejects(verdict)) return {verdict};
   for (std::size_t s = 0; s < sectors_.size(); ++s)
-    if (const Verdict verdict = choose(sectors_[s], record.sectors[s]); rejects(verdict)) return {verdict};
+    if (const Verdict verdict = choose(sectors_[s], record.sectors[s], choice[s]); rejects(verdict)) return {verdict};
   return combine(vertex, record);
 }
 
@@ -116,12 +120,14 @@ bool RemovalEvaluator::gather_links(Index vertex) {
   };
   for (Index i = 0; i < ring_size() && ring_size() > 2; ++i) {
     const Index start = mesh.corner_at(ring_vertex_[i]);
-    for (Index corner = start; corner != kNoIndex;) {
+    Index corner = start;
+    for (Index left = start; left != kNoIndex;) {
+      corner = left;
       link(i, mesh.vertex(next_corner(corner)));
-      link(i, mesh.vertex(previous_corner(corner)));
-      corner = mesh.swing_left(corner);
-      if (corner == start) break;
+      left = mesh.swing_left(corner);
+      if (left == start) break;
     }
+    link(i, mesh.vertex(previous_corner(corner)));  // at a border no other corner has seen it
   }
   for (const Index v : ring_vertex_) ring_of_vertex_[v] = kNoIndex;
   if (ring_size() == 3 && star_.closed) {
@@ -185,100 +191,118 @@ RemovalEvaluator::Triangle& RemovalEvaluator::triangle(const Sector& sector, Pol
   entry.normal = cross(position(sector, t.b) - a, position(sector, t.c) - a);
   entry.volume = dot(entry.normal, center_ - a) / 6;
   entry.has_angles = entry.has_distances = false;
-  entry.verdict = flip_verdict(sector, t, entry);
+  entry.verdict = judge(sector, t, entry);
   entry.known = true;
   return entry;
 }
 
-Verdict RemovalEvaluator::flip_verdict(const Sector& sector, PolygonTriangle t, const Triangle& entry) const {
-  const double area = length(entry.normal);
+Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const Triangle& entry) const {
+  const double square_area = squared_length(entry.normal);
   const double longest = std::max({squared_length(position(sector, t.b) - position(sector, t.a)),
                                    squared_length(position(sector, t.c) - position(sector, t.b)),
                                    squared_length(position(sector, t.a) - position(sector, t.c))});
-  if (!(area > kMinShape * longest)) return Verdict::Flip;
+  if (!(square_area > kMinShape * kMinShape * longest * longest)) return Verdict::Flip;
   bool at_rim = false;
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
-    if (!is_rim(sector, from, to)) continue;
+    if (!is_rim(sector, from, to)) {
+      const bool is_closing = from + 1U == sector.size() && to == 0;
+      if (!is_closing && linked(ring_number(sector, from), ring_number(sector, to))) return Verdict::Link;
+      continue;
+    }
     at_rim = true;
     const Vec3& fine = fine_normal_[sector.ring_begin + from];
-    if (dot(entry.normal, fine) < kMinNormalCosine * area * length(fine)) return Verdict::Flip;
+    const double cosine = dot(entry.normal, fine);
+    if (cosine < 0 || cosine * cosine < kMinNormalCosine * kMinNormalCosine * square_area * squared_length(fine))
+      return Verdict::Flip;
   }
   return at_rim || dot(entry.normal, sector.normal) > 0 ? Verdict::Legal : Verdict::Flip;
 }
 
-Verdict RemovalEvaluator::admissible(const Sector& sector, Triangles triangles) {
-  for (const PolygonTriangle t : triangles) {
-    for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
-      const bool is_closing = from + 1U == sector.size() && to == 0;
-      if (!is_rim(sector, from, to) && !is_closing && linked(ring_number(sector, from), ring_number(sector, to)))
-        return Verdict::Link;
-    }
+Verdict RemovalEvaluator::judge(const Sector& sector, Triangles triangles) {
+  for (const PolygonTriangle t : triangles)
     if (const Verdict verdict = triangle(sector, t).verdict; rejects(verdict)) return verdict;
-  }
   return Verdict::Legal;
 }
 
-Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch) {
-  patch.triangles.clear();
-  if (patch.polygon.size() == 2) return Verdict::Legal;
-  const auto size = static_cast<int>(patch.polygon.size());
-  const bool is_tabulated = size <= kMaxTabulatedPolygon;
-  reset_triangles(patch.polygon.size());
-  const auto candidate = [&](int which) -> Triangles {
-    if (is_tabulated) return triangulation(size, which);
-    fan_.clear();
-    for (int i = 1; i + 1 < size; ++i) {
-      std::array<int, 3> corner{which, (which + i) % size, (which + i + 1) % size};
-      std::sort(corner.begin(), corner.end());
-      fan_.push_back({static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
-                      static_cast<std::uint8_t>(corner[2])});
-    }
-    return fan_;
-  };
+/// Triangulation `which` of a sector's polygon: from the table, or the fan from corner `which` of a large polygon.
+RemovalEvaluator::Triangles RemovalEvaluator::candidate(const Sector& sector, int which) {
+  const auto size = static_cast<int>(sector.size());
+  if (size <= kMaxTabulatedPolygon) return triangulation(size, which);
+  fan_.clear();
+  for (int i = 1; i + 1 < size; ++i) {
+    std::array<int, 3> corner{which, (which + i) % size, (which + i + 1) % size};
+    std::sort(corner.begin(), corner.end());
+    fan_.push_back({static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
+                    static_cast<std::uint8_t>(corner[2])});
+  }
+  return fan_;
+}
 
+double RemovalEvaluator::squared_volume_sum(const Sector& sector, Triangles triangles) {
+  double sum = 0;
+  for (const PolygonTriangle t : triangles) {
+    const double volume = triangle(sector, t).volume;
+    sum += volume * volume;
+  }
+  return sum;
+}
+
+/// Fills `ranked_` with the admissible triangulations and their squared swept volumes.
+Verdict RemovalEvaluator::list_admissible(const Sector& sector) {
+  const auto size = static_cast<int>(sector.size());
+  const int count = size <= kMaxTabulatedPolygon ? triangulation_count(size) : size;
   ranked_.clear();
   Verdict verdict = Verdict::Flip;
-  for (int which = 0; which < (is_tabulated ? triangulation_count(size) : size); ++which) {
-    const Triangles triangles = candidate(which);
-    const Verdict found = admissible(sector, triangles);
+  for (int which = 0; which < count; ++which) {
+    const Triangles triangles = candidate(sector, which);
+    const Verdict found = judge(sector, triangles);
     if (found == Verdict::Link) verdict = Verdict::Link;
-    if (rejects(found)) continue;
-    double squared_volume = 0;
-    for (const PolygonTriangle t : triangles) squared_volume += std::pow(triangle(sector, t).volume, 2);
-    ranked_.emplace_back(squared_volume, which);
+    if (found == Verdict::Legal) ranked_.emplace_back(squared_volume_sum(sector, triangles), which);
   }
-  if (ranked_.empty()) return verdict;
+  return ranked_.empty() ? verdict : Verdict::Legal;
+}
 
+/// Picks the best triangulation of a sector, trying `choice` alone where it names one that is still admissible.
+Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch, std::uint8_t& choice) {
+  patch.triangles.clear();
+  if (sector.size() == 2) return Verdict::Legal;
+  reset_triangles(sector.size());
   const bool is_hybrid = options_->metric == Metric::Hybrid;
-  if (is_hybrid) {
-    std::sort(ranked_.begin(), ranked_.end());
-    if (ranked_.size() > kFullyRanked) ranked_.resize(kFullyRanked);
-    gather_points(sector);
+  if (is_hybrid) gather_points(sector);
+  if (choice == kNoChoice || rejects(judge(sector, candidate(sector, choice)))) {
+    if (const Verdict verdict = list_admissible(sector); rejects(verdict)) return verdict;
+    choice = static_cast<std::uint8_t>(is_hybrid ? best_by_distance(sector) : best_by_curvature(sector));
   }
-  double best = std::numeric_limits<double>::infinity();
-  int best_which = ranked_.front().second;
-  for (const auto& [squared_volume, which] : ranked_) {
-    const Triangles triangles = candidate(which);
-    const double rank = is_hybrid ? hybrid_rank(sector, triangles, squared_volume) : curvature_change(sector, triangles);
-    if (rank < best) best = rank, best_which = which;
-  }
-  const Triangles chosen = candidate(best_which);
+  const Triangles chosen = candidate(sector, choice);
   patch.triangles.assign(chosen.begin(), chosen.end());
   return Verdict::Legal;
 }
 
-/// A monotone stand-in for the hybrid cost of one sector: (V·D)^0.45 · ΔK^0.1 to the power 40/3.
-double RemovalEvaluator::hybrid_rank(const Sector& sector, Triangles triangles, double squared_volume) {
-  const double squared_distance = squared_distance_sum(sector, triangles);
-  return squared_volume * squared_distance * squared_distance * squared_distance;
+/// Ranks by (V·D)^6 = squared volume · D^6; the curvature's part is left to the order of removals.
+int RemovalEvaluator::best_by_distance(const Sector& sector) {
+  std::sort(ranked_.begin(), ranked_.end());
+  if (ranked_.size() > kFullyRanked) ranked_.resize(kFullyRanked);
+  for (auto& [rank, which] : ranked_) rank *= std::pow(squared_distance_sum(sector, candidate(sector, which)), 3);
+  return std::min_element(ranked_.begin(), ranked_.end())->second;
+}
+
+int RemovalEvaluator::best_by_curvature(Sector& sector) {
+  for (auto& [rank, which] : ranked_) rank = curvature_change(sector, candidate(sector, which)) + tie_break(rank);
+  return std::min_element(ranked_.begin(), ranked_.end())->second;
+}
+
+/// What orders removals that leave the curvature (nearly) as it is, as on any developable surface: the volume they sweep.
+double RemovalEvaluator::tie_break(double squared_volume) const {
+  return kTieBreak * tie_scale_ * std::cbrt(std::sqrt(squared_volume));
 }
 
 void RemovalEvaluator::gather_points(const Sector& sector) {
   points_.clear();
+  weights_.assign(1, 1.0F);
   points_.add({});
   for (const Index face : sector.patch->faces)
     for (Index p = state_->points.first(face); p != kNoIndex; p = state_->points.next(p))
-      points_.add(state_->points.position(p) - center_);
+      points_.add(state_->points.position(p) - center_), weights_.push_back(state_->points.weight(p));
 }
 
 void RemovalEvaluator::measure_distances(const Sector& sector, PolygonTriangle t, Triangle& entry) {
@@ -297,7 +321,7 @@ double RemovalEvaluator::squared_distance_sum(const Sector& sector, Triangles tr
     for (std::size_t i = 0; i < nearest_.size(); ++i) nearest_[i] = std::min(nearest_[i], entry.squared_distance[i]);
   }
   double sum = 0;
-  for (const float d : nearest_) sum += static_cast<double>(d);
+  for (std::size_t i = 0; i < nearest_.size(); ++i) sum += static_cast<double>(weights_[i] * nearest_[i]);
   return sum;
 }
 
@@ -393,14 +417,15 @@ Evaluation RemovalEvaluator::combine(Index vertex, const RemovalRecord& record) 
     const Triangles triangles = record.sectors[s].triangles;
     if (sectors_.size() > 1) reset_triangles(sector.size());
     add_coarse_curvature(sector, triangles);
-    if (!is_hybrid || triangles.empty()) continue;
+    if (triangles.empty()) continue;
+    squared_volume += squared_volume_sum(sector, triangles);
+    if (!is_hybrid) continue;
     if (sectors_.size() > 1) gather_points(sector);
-    for (const PolygonTriangle t : triangles) squared_volume += std::pow(triangle(sector, t).volume, 2);
     squared_distance += squared_distance_sum(sector, triangles);
   }
   add_closing_curvature();
   Evaluation result{Verdict::Legal, 0, largest_change()};
-  result.cost = result.curvature_error;
+  result.cost = result.curvature_error + tie_break(squared_volume);
   if (!is_hybrid) return result;
   const double swept = std::sqrt(std::cbrt(std::sqrt(squared_volume)) * std::sqrt(squared_distance));
   const double moved = swept + kLineWeight * line_cost(vertex);

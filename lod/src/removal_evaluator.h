@@ -23,6 +23,10 @@ inline constexpr std::size_t kMaxRing = 64;
 /// What the evaluation of a removal found.
 enum class Verdict : std::uint8_t { Legal, Locked, Flip, Link, Ring };
 
+/// Which triangulation each sector of a star was given, for evaluating it again.
+using Choice = std::array<std::uint8_t, 2>;
+inline constexpr std::uint8_t kNoChoice = 255;
+
 struct Evaluation {
   Verdict verdict = Verdict::Locked;
   double cost = 0;             ///< orders removals; for the pure curvature metrics it is the curvature error
@@ -37,7 +41,8 @@ class RemovalEvaluator {
   RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options);
 
   /// Evaluates a removal. Where it is legal, `record` holds the sectors with the triangles chosen.
-  Evaluation evaluate(Index vertex, RemovalRecord& record);
+  /// `choice` names the triangulations chosen; where it comes with a choice that is still admissible, no other is tried.
+  Evaluation evaluate(Index vertex, RemovalRecord& record, Choice& choice);
 
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
@@ -69,12 +74,17 @@ class RemovalEvaluator {
   void gather_outside_curvature();
 
   Verdict check_closing_edge() const;
-  Verdict choose(Sector& sector, SectorPatch& patch);
-  Verdict admissible(const Sector& sector, Triangles triangles);
-  double hybrid_rank(const Sector& sector, Triangles triangles, double squared_volume);
+  Verdict choose(Sector& sector, SectorPatch& patch, std::uint8_t& choice);
+  Triangles candidate(const Sector& sector, int which);
+  Verdict list_admissible(const Sector& sector);
+  int best_by_distance(const Sector& sector);
+  int best_by_curvature(Sector& sector);
+  double tie_break(double squared_volume) const;
   void reset_triangles(std::size_t size);
   Triangle& triangle(const Sector& sector, PolygonTriangle t);
-  Verdict flip_verdict(const Sector& sector, PolygonTriangle t, const Triangle& triangle) const;
+  Verdict judge(const Sector& sector, PolygonTriangle t, const Triangle& triangle) const;
+  Verdict judge(const Sector& sector, Triangles triangles);
+  double squared_volume_sum(const Sector& sector, Triangles triangles);
   void measure_distances(const Sector& sector, PolygonTriangle t, Triangle& triangle);
   double squared_distance_sum(const Sector& sector, Triangles triangles);
 
@@ -101,6 +111,7 @@ class RemovalEvaluator {
   const SimplifyOptions* options_;
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
+  double tie_scale_ = 1;
 
   Star star_;
   Vec3 center_;
@@ -116,6 +127,7 @@ class RemovalEvaluator {
   std::vector<std::uint8_t> linked_;        // which ring vertices an edge joins
   std::vector<Index> ring_of_vertex_;       // by vertex, kNoIndex outside the ring
   PointBatch points_;                       // the sector's carried points
+  std::vector<float> weights_;              // of those points
   std::vector<float> nearest_;
   std::vector<Triangle> table_;
   Triangle untabulated_;

@@ -19,7 +19,8 @@ using namespace detail;
 
 // Large meshes lose nothing by wide rounds; near the end every removal counts.
 constexpr double kWideShare = 0.25;
-constexpr double kNarrowShare = 0.1;
+constexpr double kNarrowShare = 0.05;
+constexpr double kNarrowPureShare = 0.02;  // curvature alone leaves many ties, and their order matters
 constexpr std::size_t kNarrowBelow = 8000;
 
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
@@ -55,6 +56,7 @@ class Simplifier {
 
   std::vector<float> cost_;
   std::vector<Verdict> verdict_;
+  std::vector<Choice> choice_;
   std::vector<Index> candidates_;
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
@@ -72,6 +74,7 @@ void Simplifier::prepare() {
   for (Index v = 0; v < count; ++v)
     state_.original_curvature[v] = static_cast<float>(metric_curvature(options_, state_.curvature[v]));
   cost_.assign(count, kIllegal);
+  choice_.assign(count, {kNoChoice, kNoChoice});
   verdict_.assign(count, Verdict::Locked);
   claimed_.assign(count, 0);
   for (Index v = 0; v < count; ++v)
@@ -79,7 +82,8 @@ void Simplifier::prepare() {
 }
 
 void Simplifier::evaluate(Index vertex) {
-  const Evaluation evaluation = evaluator_.evaluate(vertex, record_);
+  choice_[vertex] = {kNoChoice, kNoChoice};
+  const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
   ++evaluation_count_;
   verdict_[vertex] = evaluation.verdict;
   const bool within = evaluation.curvature_error <= options_.stop.max_curvature_error;
@@ -91,7 +95,8 @@ void Simplifier::choose_candidates() {
   candidates_.clear();
   for (Index v = 0; v < cost_.size(); ++v)
     if (cost_[v] < kIllegal) candidates_.push_back(v);
-  const double share = candidates_.size() < kNarrowBelow ? kNarrowShare : kWideShare;
+  const double narrow = options_.metric == Metric::Hybrid ? kNarrowShare : kNarrowPureShare;
+  const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size())));
   const auto cheaper = [&](Index a, Index b) { return cost_[a] != cost_[b] ? cost_[a] < cost_[b] : a < b; };
   const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(count);
@@ -131,8 +136,7 @@ void Simplifier::remove(RemovalRecord& record, const Evaluation& evaluation) {
 
 bool Simplifier::try_remove(Index vertex) {
   if (!ring_is_free(vertex)) return false;
-  const Evaluation evaluation = evaluator_.evaluate(vertex, record_);
-  ++evaluation_count_;
+  const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
   // Its surroundings may have changed since it was ranked.
   verdict_[vertex] = evaluation.verdict;
   if (evaluation.verdict != Verdict::Legal || evaluation.curvature_error > options_.stop.max_curvature_error) {

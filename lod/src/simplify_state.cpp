@@ -1,11 +1,15 @@
 #include "simplify_state.h"
 
 #include <limits>
+#include <numeric>
 
 #include "point_triangle.h"
 
 namespace lodestone::detail {
 namespace {
+
+// Enough to tell a face's distance from the surface it stands for; more costs time and gains nothing measurable.
+constexpr std::size_t kMaxPointsOfFace = 16;
 
 /// Takes all points off a sector's fine faces.
 std::vector<Index> take_points(CarriedPoints& points, const SectorPatch& sector) {
@@ -25,13 +29,14 @@ std::vector<Index> heirs(const SectorPatch& sector) {
   return {face_of_corner(sector.lone_outer)};
 }
 
-void give_points(SimplifyState& state, const std::vector<Index>& taken, const std::vector<Index>& faces,
-                 const Vec3& origin) {
+/// Returns the heir nearest to each point.
+std::vector<Index> nearest_heirs(const SimplifyState& state, const std::vector<Index>& taken,
+                                 const std::vector<Index>& faces, const Vec3& origin) {
   PointBatch batch;
   for (const Index p : taken) batch.add(state.points.position(p) - origin);
   std::vector<float> distance(taken.size());
   std::vector<float> nearest(taken.size(), std::numeric_limits<float>::infinity());
-  std::vector<Index> heir(taken.size(), faces.empty() ? kNoIndex : faces.front());
+  std::vector<Index> heir(taken.size(), kNoIndex);
   for (const Index face : faces) {
     const auto corner = [&](Index i) {
       return Vec3(state.mesh.positions[state.connectivity.vertex(3 * face + i)]) - origin;
@@ -40,8 +45,34 @@ void give_points(SimplifyState& state, const std::vector<Index>& taken, const st
     for (std::size_t i = 0; i < taken.size(); ++i)
       if (distance[i] < nearest[i]) nearest[i] = distance[i], heir[i] = face;
   }
-  for (std::size_t i = 0; i < taken.size(); ++i)
-    if (heir[i] != kNoIndex) state.points.add(heir[i], taken[i]);
+  return heir;
+}
+
+/// Keeps every n-th point of a crowded face, with the weight of all.
+void thin(CarriedPoints& points, std::vector<Index>& members) {
+  if (members.size() <= kMaxPointsOfFace) return;
+  const auto weight_of = [&](float sum, Index p) { return sum + points.weight(p); };
+  const float before = std::accumulate(members.begin(), members.end(), 0.0F, weight_of);
+  for (std::size_t i = 0; i < kMaxPointsOfFace; ++i) members[i] = members[i * members.size() / kMaxPointsOfFace];
+  members.resize(kMaxPointsOfFace);
+  const float after = std::accumulate(members.begin(), members.end(), 0.0F, weight_of);
+  for (const Index p : members) points.set_weight(p, points.weight(p) * before / after);
+}
+
+void give_points(SimplifyState& state, const std::vector<Index>& taken, const std::vector<Index>& faces,
+                 const Vec3& origin) {
+  const std::vector<Index> heir = nearest_heirs(state, taken, faces, origin);
+  std::vector<Index> members;
+  for (const Index face : faces) {
+    // What the heir holds already stays in the count: the face beyond an ear keeps its own points.
+    members.clear();
+    for (Index p = state.points.first(face); p != kNoIndex; p = state.points.next(p)) members.push_back(p);
+    state.points.clear(face);
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      if (heir[i] == face) members.push_back(taken[i]);
+    thin(state.points, members);
+    for (const Index p : members) state.points.add(face, p);
+  }
 }
 
 }  // namespace

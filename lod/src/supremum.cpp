@@ -23,10 +23,6 @@ constexpr double kRoundingSlack = 1 + 1e-12;
 using Corners = std::array<PieceCorner, 3>;
 using Distances = std::array<double, 3>;  // From the three corners to one face.
 
-bool same_face(const Corners& c) {
-  return c[0].face != kNoIndex && c[0].face == c[1].face && c[0].face == c[2].face;
-}
-
 double largest(const Distances& d) { return std::max({d[0], d[1], d[2]}); }
 
 /// The bound from the corners' distances alone, which grow by no more than the way from a corner.
@@ -41,12 +37,12 @@ double bound_by_length(const Corners& c) {
                    c[2].distance + std::max(e12, e20)});
 }
 
-Distances distances_to(const Corners& c, Index face, const SurfaceIndex& to) {
-  Distances d;
-  for (std::size_t i = 0; i < 3; ++i) {
-    d[i] = c[i].face == face ? c[i].distance : to.distance_to_face(c[i].point, face);
+/// The face to look for a patch from.
+Index start_of(const Corners& corners) {
+  for (const PieceCorner& corner : corners) {
+    if (corner.face != kNoIndex) return corner.face;
   }
-  return d;
+  return kNoIndex;
 }
 
 /// Where a difference that is `from` at one end and `towards`, of the other sign, at the other end vanishes.
@@ -55,58 +51,113 @@ double zero_between(double from, double towards) {
   return range != 0 ? std::clamp(from / range, 0.0, 1.0) : 0.5;
 }
 
-/// Bounds a piece cut in two along the line where its distances to the faces g and h seem to agree.
-double bound_by_cut(const Corners& c, Index g, const Distances& to_g, Index h, const Distances& to_h,
-                    const SurfaceIndex& to) {
-  const std::array<bool, 3> at_g = {to_g[0] <= to_h[0], to_g[1] <= to_h[1], to_g[2] <= to_h[2]};
-  double bound = 0;
-  for (std::size_t i = 0; i < 3; ++i) bound = std::max(bound, std::min(to_g[i], to_h[i]));
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    if (at_g[i] == at_g[j]) continue;
-    const double t = zero_between(to_g[i] - to_h[i], to_g[j] - to_h[j]);
-    const Vec3 cut = c[i].point + (c[j].point - c[i].point) * t;
-    bound = std::max({bound, to.distance_to_face(cut, g), to.distance_to_face(cut, h)});
+/// An upper bound of the distances from a piece to a surface; every face tried can only lower it.
+class PieceBound {
+ public:
+  PieceBound(const Corners& corners, const SurfaceIndex& to, double target)
+      : corners_(corners), to_(to), target_(target), value_(bound_by_length(corners)) {}
+
+  double value() const { return value_; }
+  bool met() const { return value_ <= target_; }
+
+  /// Tries one more face: for the whole piece, and for a part of it beside each face tried before.
+  void try_face(Index face) {
+    if (face == kNoIndex || met()) return;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (tried_[i].face == face) return;
+    }
+    const Candidate candidate{face, distances_to(face)};
+    value_ = std::min(value_, largest(candidate.distances));
+    for (std::size_t i = 0; i < count_ && !met(); ++i) try_cut(tried_[i], candidate);
+    tried_[count_++] = candidate;
   }
-  return bound;
-}
+
+ private:
+  struct Candidate {
+    Index face = kNoIndex;
+    Distances distances{};
+  };
+
+  Distances distances_to(Index face) const {
+    Distances d;
+    for (std::size_t i = 0; i < 3; ++i) {
+      d[i] = corners_[i].face == face ? corners_[i].distance : to_.distance_to_face(corners_[i].point, face);
+    }
+    return d;
+  }
+
+  /// Cuts the piece along the line where its distances to two faces seem to agree.
+  void try_cut(const Candidate& g, const Candidate& h) {
+    double bound = 0;
+    for (std::size_t i = 0; i < 3; ++i) bound = std::max(bound, std::min(g.distances[i], h.distances[i]));
+    for (std::size_t i = 0; i < 3 && bound < value_; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      const double at_i = g.distances[i] - h.distances[i];
+      const double at_j = g.distances[j] - h.distances[j];
+      if ((at_i <= 0) == (at_j <= 0)) continue;
+      const Vec3 cut = corners_[i].point + (corners_[j].point - corners_[i].point) * zero_between(at_i, at_j);
+      bound = std::max({bound, to_.distance_to_face(cut, g.face), to_.distance_to_face(cut, h.face)});
+    }
+    value_ = std::min(value_, bound);
+  }
+
+  const Corners& corners_;
+  const SurfaceIndex& to_;
+  double target_;
+  double value_;
+  std::size_t count_ = 0;
+  std::array<Candidate, 4> tried_;
+};
 
 }  // namespace
 
-double bound_piece(const Corners& c, const SurfaceIndex& to, double target) {
-  if (same_face(c)) return largest({c[0].distance, c[1].distance, c[2].distance});
-  double bound = bound_by_length(c);
-  std::array<Distances, 3> rows;
-  for (std::size_t j = 0; j < 3 && bound > target; ++j) {
-    if (c[j].face == kNoIndex) continue;
-    rows[j] = distances_to(c, c[j].face, to);
-    bound = std::min(bound, largest(rows[j]));
-  }
-  for (std::size_t j = 0; j < 3 && bound > target; ++j) {
-    const std::size_t k = (j + 1) % 3;
-    if (c[j].face == kNoIndex || c[k].face == kNoIndex || c[j].face == c[k].face) continue;
-    const std::size_t third = (j + 2) % 3;
-    if (std::min(rows[j][third], rows[k][third]) >= bound) continue;
-    bound = std::min(bound, bound_by_cut(c, c[j].face, rows[j], c[k].face, rows[k], to));
-  }
-  return bound;
+void SurfaceBounds::lower(Index face, double bound, std::span<const Index> found) {
+  if (bound >= faces[face]) return;
+  faces[face] = bound;
+  if (witnesses.empty()) return;
+  Witnesses& witness = witnesses[face];
+  witness = {};
+  if (found.empty() || found.size() > witness.faces.size()) return;
+  if (std::find(found.begin(), found.end(), kNoIndex) != found.end()) return;
+  witness.faces.fill(found[0]);
+  std::copy(found.begin(), found.end(), witness.faces.begin());
 }
 
-SupremumSearch::SupremumSearch(const Mesh& from, const SurfaceIndex& to, SurfaceBounds& bounds)
-    : from_(from), to_(to), bounds_(bounds) {}
+SupremumSearch::SupremumSearch(const Mesh& from, const SurfaceIndex& to, PatchBound& to_patch, SurfaceBounds& bounds)
+    : from_(from), to_(to), to_patch_(to_patch), bounds_(bounds) {}
 
 void SupremumSearch::visit_vertices(Goal& goal) {
   const Index count = static_cast<Index>(from_.face_count());
   for (Index face = 0; face < count; ++face) {
-    if (bounds_.faces[face] > goal.threshold()) visit_face(face, goal);
+    if (is_open(face, goal)) visit_face(face, goal);
   }
 }
 
 void SupremumSearch::visit_face(Index face, Goal& goal) {
+  bool patch_tried = false;
   do {
-    const double bound = bound_piece(corners_of(face), to_, goal.threshold());
-    bounds_.faces[face] = std::min(bounds_.faces[face], bound);
-  } while (bounds_.faces[face] > goal.threshold() && query_one_vertex(face, goal));
+    const Corners corners = corners_of(face);
+    const std::array<Index, 3> nearest = {corners[0].face, corners[1].face, corners[2].face};
+    bounds_.lower(face, bound_by_length(corners), nearest);
+    if (!patch_tried && is_open(face, goal)) {
+      patch_tried = start_of(corners) != kNoIndex;
+      const double bound = bound_by_patch(corners, goal);
+      bounds_.lower(face, bound, to_patch_.patch());
+    }
+    if (is_open(face, goal)) bounds_.lower(face, bound_by_corners(corners, goal), nearest);
+  } while (is_open(face, goal) && query_one_vertex(face, goal));
+}
+
+double SupremumSearch::bound_by_corners(const Corners& corners, const Goal& goal) const {
+  PieceBound bound(corners, to_, goal.threshold());
+  for (const PieceCorner& corner : corners) bound.try_face(corner.face);
+  return bound.value();
+}
+
+double SupremumSearch::bound_by_patch(const Corners& c, const Goal& goal) {
+  const Index start = start_of(c);
+  if (start == kNoIndex) return kUnbounded;
+  return to_patch_.bound({c[0].point, c[1].point, c[2].point}, start, goal.threshold(), goal.patch_slack());
 }
 
 /// Finds the nearest face of one of the face's vertices; false where all are known.
@@ -125,7 +176,7 @@ bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
 }
 
 PieceCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
-  const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
+  ++queries; const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
   const PieceCorner corner{point, hit.distance, hit.face};
   if (hit.distance > largest_distance_) {
     assume(from_face, hit.distance, goal);
@@ -160,7 +211,7 @@ Corners SupremumSearch::corners_of(Index face) const {
 void SupremumSearch::split_faces(Goal& goal, std::size_t budget) {
   const Index count = static_cast<Index>(from_.face_count());
   for (Index face = 0; face < count; ++face) {
-    if (bounds_.faces[face] > goal.threshold()) add_face(face, goal);
+    if (is_open(face, goal)) add_face(face, goal);
   }
   for (; budget > 0 && !heap_.empty() && heap_.front().bound > goal.threshold(); --budget) split(pop(), goal);
   for (const Piece& piece : heap_) bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
@@ -177,19 +228,32 @@ void SupremumSearch::add_face(Index face, Goal& goal) {
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   const double bound = bounds_.faces[face];
   bounds_.faces[face] = 0;
+  if (!bounds_.witnesses.empty()) bounds_.witnesses[face] = {};
   add_piece({bound, {}, face}, {first, first + 1, first + 2}, goal);
 }
 
-void SupremumSearch::add_piece(const Piece& parent, const std::array<Index, 3>& corners, const Goal& goal) {
-  const double target = goal.threshold();
-  const double bound =
-      bound_piece({corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]}, to_, target);
-  const Piece piece{std::min(bound, parent.bound), corners, parent.face};
-  if (piece.bound > target) {
+void SupremumSearch::add_piece(const Piece& parent, const std::array<Index, 3>& corners, Goal& goal) {
+  const Corners c = {corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]};
+  double bound = std::min(parent.bound, bound_by_corners(c, goal));
+  if (bound > goal.threshold()) bound = std::min(bound, bound_by_patch(c, goal));
+  if (bound > goal.threshold()) bound = std::min(bound, bound_by_centre(c, parent.face, goal));
+  const Piece piece{bound, corners, parent.face};
+  if (piece.bound > goal.threshold()) {
     push(piece);
   } else {
     bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
   }
+}
+
+/// At the corners several faces may be equally near, and the one that covers the piece need not be the one found: the
+/// face nearest to the centre is tried as well.
+double SupremumSearch::bound_by_centre(const Corners& c, Index from_face, Goal& goal) {
+  const Vec3 centre = (c[0].point + c[1].point + c[2].point) * (1.0 / 3.0);
+  const Index face = query(centre, c[0].face, from_face, goal).face;
+  PieceBound bound(c, to_, goal.threshold());
+  bound.try_face(face);
+  for (const PieceCorner& corner : c) bound.try_face(corner.face);
+  return bound.value();
 }
 
 /// Halves a piece across its longest edge.

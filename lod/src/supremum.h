@@ -4,10 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/deviation.h>
+
+#include "patch_bound.h"
 
 namespace lodestone::detail {
 
@@ -22,6 +25,8 @@ struct Goal {
 
   /// Upper bounds at or below this need no narrowing.
   double threshold() const { return std::max(enough, found * (1 + relative_tolerance) + absolute_tolerance); }
+  /// What bounds by patches may add.
+  double patch_slack() const { return 0.25 * absolute_tolerance; }
 };
 
 /// Returns the goal that the options ask for, with nothing found.
@@ -34,14 +39,27 @@ struct Anchor {
   bool exact = false;            ///< that face is the nearest
 };
 
+/// The faces of the other surface that a bound rests on; it holds for as long as all of them exist. None: unknown.
+struct Witnesses {
+  std::array<Index, 4> faces = {kNoIndex, kNoIndex, kNoIndex, kNoIndex};  ///< unused entries repeat the first
+
+  bool known() const { return faces[0] != kNoIndex; }
+};
+
 /// What is known of a surface's distances to another one. It may be kept, while it stays true, between searches.
 struct SurfaceBounds {
-  std::vector<Anchor> vertices;  ///< one per vertex
-  std::vector<double> faces;     ///< one per face: an upper bound of its points' distances
+  std::vector<Anchor> vertices;      ///< one per vertex
+  std::vector<double> faces;         ///< one per face: an upper bound of its points' distances
+  std::vector<Witnesses> witnesses;  ///< of `faces`; may be empty: not wanted
 
-  explicit SurfaceBounds(const Mesh& mesh) : vertices(mesh.vertex_count()), faces(mesh.face_count(), kUnbounded) {}
   SurfaceBounds() = default;
+  SurfaceBounds(const Mesh& mesh, bool wants_witnesses)
+      : vertices(mesh.vertex_count()),
+        faces(mesh.face_count(), kUnbounded),
+        witnesses(wants_witnesses ? mesh.face_count() : 0) {}
   double maximum() const { return faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end()); }
+  /// Lowers a face's bound; `found` are the faces that the new bound rests on.
+  void lower(Index face, double bound, std::span<const Index> found);
 };
 
 /// A corner of a piece of a triangle.
@@ -51,18 +69,15 @@ struct PieceCorner {
   Index face = kNoIndex;         ///< as in Anchor
 };
 
-/// Returns an upper bound of the distances from a triangle to a surface, given what its corners know; the search for a
-/// better one ends at `target`.
-double bound_piece(const std::array<PieceCorner, 3>& corners, const SurfaceIndex& to, double target);
-
 /// The search for the largest distance from the faces of a mesh to a surface: branch and bound, best first.
 class SupremumSearch {
  public:
-  /// All arguments outlive the search. Pre: `bounds` has the mesh's counts, `to` is not empty.
-  SupremumSearch(const Mesh& from, const SurfaceIndex& to, SurfaceBounds& bounds);
+  /// All arguments outlive the search; `to` and `to_patch` are of one surface, which is not empty.
+  SupremumSearch(const Mesh& from, const SurfaceIndex& to, PatchBound& to_patch, SurfaceBounds& bounds);
 
   /// Lowers the faces' bounds as far as the goal asks and queries at vertices can.
   void visit_vertices(Goal& goal);
+  std::size_t queries = 0;
   /// Splits faces until all bounds meet the goal or `budget` queries are spent.
   void split_faces(Goal& goal, std::size_t budget);
 
@@ -85,18 +100,25 @@ class SupremumSearch {
     Index face;
   };
 
-  std::array<PieceCorner, 3> corners_of(Index face) const;
+  using Corners = std::array<PieceCorner, 3>;
+
+  bool is_open(Index face, const Goal& goal) const { return bounds_.faces[face] > goal.threshold(); }
+  Corners corners_of(Index face) const;
+  double bound_by_corners(const Corners& corners, const Goal& goal) const;
+  double bound_by_patch(const Corners& corners, const Goal& goal);
+  double bound_by_centre(const Corners& corners, Index from_face, Goal& goal);
   void visit_face(Index face, Goal& goal);
   bool query_one_vertex(Index face, Goal& goal);
   PieceCorner query(const Vec3& point, Index hint, Index from_face, Goal& goal);
   void add_face(Index face, Goal& goal);
-  void add_piece(const Piece& parent, const std::array<Index, 3>& corners, const Goal& goal);
+  void add_piece(const Piece& parent, const std::array<Index, 3>& corners, Goal& goal);
   void split(const Piece& piece, Goal& goal);
   void push(const Piece& piece);
   Piece pop();
 
   const Mesh& from_;
   const SurfaceIndex& to_;
+  PatchBound& to_patch_;
   SurfaceBounds& bounds_;
   double largest_distance_ = 0;
   Vec3 farthest_point_;

@@ -247,13 +247,11 @@ void SurfaceIndex::Impl::set_scale(const Mesh& mesh) {
 }
 
 void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
-  const auto corner = [&mesh](std::size_t face, Index i) -> const Vec3f& {
-    return mesh.positions[mesh.corner_vertex(static_cast<Index>(3 * face + i))];
-  };
   const std::size_t count = mesh.face_count();
   std::vector<Entry> entries(count);
   for (std::size_t f = 0; f < count; ++f) {
-    const Vec3 sum = Vec3(corner(f, 0)) + Vec3(corner(f, 1)) + Vec3(corner(f, 2));
+    const Triangle t = detail::triangle_of(mesh, static_cast<Index>(f));
+    const Vec3 sum = Vec3(t.a) + Vec3(t.b) + Vec3(t.c);
     entries[f] = {scaled(sum * (1.0 / 3.0)), static_cast<Index>(f)};
   }
   std::size_t capacity = 1;
@@ -265,7 +263,7 @@ void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
   places.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Index f = entries[i].face;
-    triangles[i] = {corner(f, 0), corner(f, 1), corner(f, 2)};
+    triangles[i] = detail::triangle_of(mesh, f);
     faces[i] = f;
     places[f] = static_cast<Index>(i);
   }

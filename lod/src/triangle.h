@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <lodestone/core/vec.h>
+#include <lodestone/core/mesh.h>
 
 namespace lodestone::detail {
 
@@ -21,6 +21,11 @@ inline Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 struct Triangle {
   Vec3f a, b, c;
 };
+
+inline Triangle triangle_of(const Mesh& mesh, Index face) {
+  return {mesh.positions[mesh.corner_vertex(3 * face)], mesh.positions[mesh.corner_vertex(3 * face + 1)],
+          mesh.positions[mesh.corner_vertex(3 * face + 2)]};
+}
 
 /// Returns the nearest point to `p` of a triangle, which may be as thin as a segment or a point.
 ///
