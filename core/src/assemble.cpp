@@ -37,10 +37,10 @@ Result<void> check_lengths(const TriangleSoup& soup) {
                                                 " differs from face count " + std::to_string(soup.indices.size() / 3));
   for (const Attribute& attribute : soup.attributes)
     if (attribute.component_count == 0 || attribute.data.size() != attribute.element_bytes() * soup.positions.size())
-      return fail(ErrorCode::InvalidArgument,
-                  "attribute " + attribute.name + " has " + std::to_string(attribute.data.size()) + " bytes for " +
-                      std::to_string(soup.positions.size()) + " points of " +
-                      std::to_string(attribute.element_bytes()));
+      return fail(ErrorCode::InvalidArgument, "attribute " + attribute.name + " has " +
+                                                  std::to_string(attribute.data.size()) + " bytes for " +
+                                                  std::to_string(soup.positions.size()) + " points of " +
+                                                  std::to_string(attribute.element_bytes()));
   for (std::size_t i = 0; i < soup.indices.size(); ++i)
     if (soup.indices[i] >= soup.positions.size())
       return fail(ErrorCode::InvalidArgument, "index " + std::to_string(i) + " is " + std::to_string(soup.indices[i]) +
@@ -217,8 +217,9 @@ class FanFinder {
       const std::uint64_t b = mesh.corner_vertex(next_corner(c));
       edges[c] = {a < b ? a << 32 | b : b << 32 | a, c, a < b};
     }
-    std::sort(edges.begin(), edges.end(),
-              [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.corner < b.corner; });
+    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+      return a.key != b.key ? a.key < b.key : a.corner < b.corner;
+    });
     for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
       while (j < edges.size() && edges[j].key == edges[i].key) ++j;
       if (j - i == 2 && edges[i].forward != edges[i + 1].forward)

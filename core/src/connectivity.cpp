@@ -17,9 +17,7 @@ struct HalfEdge {
   Index corner;       // faces the edge
 };
 
-std::uint64_t edge_key(Index a, Index b) {
-  return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
-}
+std::uint64_t edge_key(Index a, Index b) { return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a; }
 
 }  // namespace
 
@@ -47,9 +45,8 @@ Result<void> Connectivity::join_faces() {
                   "face " + std::to_string(face_of_corner(c)) + " repeats vertex " + std::to_string(a));
     edges[c] = {edge_key(a, b), c};
   }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.key != b.key ? a.key < b.key : a.corner < b.corner;
-  });
+  std::sort(edges.begin(), edges.end(),
+            [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.corner < b.corner; });
   for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
     while (j < edges.size() && edges[j].key == edges[i].key) ++j;
     // An edge of several faces, or of two that disagree on winding, stays a border of each.

@@ -24,9 +24,11 @@ Vec3 corner_normal(const Mesh& mesh, const Connectivity& connectivity, Index cor
 double edge_share(const Mesh& mesh, const Connectivity& connectivity, Index corner) {
   const Index across = connectivity.opposite(corner);
   if (across == kNoIndex) return 0;
-  const double angle = angle_between(corner_normal(mesh, connectivity, corner), corner_normal(mesh, connectivity, across));
+  const double angle =
+      angle_between(corner_normal(mesh, connectivity, corner), corner_normal(mesh, connectivity, across));
   return 0.25 * angle *
-         length(position(mesh, connectivity, previous_corner(corner)) - position(mesh, connectivity, next_corner(corner)));
+         length(position(mesh, connectivity, previous_corner(corner)) -
+                position(mesh, connectivity, next_corner(corner)));
 }
 
 }  // namespace

@@ -50,8 +50,7 @@ struct RimEdge {
 /// The corners of a sector's coarse faces, by the directed polygon edge they face.
 class CoarseEdges {
  public:
-  explicit CoarseEdges(const SectorPatch& sector)
-      : size_(sector.polygon.size()), corner_(size_ * size_, kNoIndex) {
+  explicit CoarseEdges(const SectorPatch& sector) : size_(sector.polygon.size()), corner_(size_ * size_, kNoIndex) {
     for (std::size_t i = 0; i < sector.triangles.size(); ++i) {
       const PolygonTriangle t = sector.triangles[i];
       const Index corner = 3 * sector.faces[i];
@@ -69,7 +68,9 @@ class CoarseEdges {
   std::vector<Index> corner_;
 };
 
-Index center_corner(const SectorPatch& sector, std::size_t face) { return 3 * sector.faces[face] + sector.rotation[face]; }
+Index center_corner(const SectorPatch& sector, std::size_t face) {
+  return 3 * sector.faces[face] + sector.rotation[face];
+}
 
 void save_anchors(const Connectivity& mesh, RemovalRecord& record) {
   record.vertex_corner = mesh.corner_at(record.vertex);

@@ -2,8 +2,7 @@
 
 namespace lodestone::detail {
 
-CarriedPoints::CarriedPoints(const Mesh& mesh)
-    : mesh_(&mesh), vertex_count_(static_cast<Index>(mesh.vertex_count())) {
+CarriedPoints::CarriedPoints(const Mesh& mesh) : mesh_(&mesh), vertex_count_(static_cast<Index>(mesh.vertex_count())) {
   first_.assign(mesh.face_count(), kNoIndex);
   next_.assign(mesh.vertex_count() + mesh.face_count(), kNoIndex);
   weight_.assign(next_.size(), 1.0F);

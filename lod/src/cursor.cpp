@@ -74,8 +74,10 @@ void Cursor::coarsen() {
 Mesh extract_level(const ProgressiveMesh& mesh, const Cursor& cursor) {
   Mesh level;
   const std::size_t wedge_count = cursor.wedge_count();
-  level.positions.assign(mesh.positions.begin(), mesh.positions.begin() + static_cast<std::ptrdiff_t>(cursor.vertex_count()));
-  level.wedge_vertex.assign(mesh.wedge_vertex.begin(), mesh.wedge_vertex.begin() + static_cast<std::ptrdiff_t>(wedge_count));
+  level.positions.assign(mesh.positions.begin(),
+                         mesh.positions.begin() + static_cast<std::ptrdiff_t>(cursor.vertex_count()));
+  level.wedge_vertex.assign(mesh.wedge_vertex.begin(),
+                            mesh.wedge_vertex.begin() + static_cast<std::ptrdiff_t>(wedge_count));
   for (const Attribute& attribute : mesh.attributes) {
     Attribute& copy = level.attributes.emplace_back(
         Attribute{attribute.name, attribute.type, attribute.component_count, attribute.normalized, {}});
@@ -86,7 +88,8 @@ Mesh extract_level(const ProgressiveMesh& mesh, const Cursor& cursor) {
   for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
     const std::span<const Index> corners = cursor.corners(g);
     level.corner_wedge.insert(level.corner_wedge.end(), corners.begin(), corners.end());
-    if (has_materials) level.face_material.insert(level.face_material.end(), corners.size() / 3, mesh.groups[g].material);
+    if (has_materials)
+      level.face_material.insert(level.face_material.end(), corners.size() / 3, mesh.groups[g].material);
   }
   return level;
 }

@@ -15,9 +15,37 @@ float round_up(double value) {
   return static_cast<double>(f) < value ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
+DeviationOptions measuring_options() {
+  DeviationOptions options;
+  options.relative_tolerance = 0.01;
+  options.budget = 100'000;
+  return options;
+}
+
+/// Copies the faces that are left, and the vertices they use.
+Mesh current_level(const Mesh& full, const Connectivity& current) {
+  Mesh level;
+  std::vector<Index> vertex_of(full.vertex_count(), kNoIndex);
+  for (Index c = 0; c < 3 * current.face_slot_count(); ++c) {
+    if (!current.has_face(face_of_corner(c))) continue;
+    const Index v = current.vertex(c);
+    if (vertex_of[v] == kNoIndex) {
+      vertex_of[v] = static_cast<Index>(level.positions.size());
+      level.positions.push_back(full.positions[v]);
+      level.wedge_vertex.push_back(vertex_of[v]);
+    }
+    level.corner_wedge.push_back(vertex_of[v]);
+  }
+  return level;
+}
+
 }  // namespace
 
-DeviationBounds::DeviationBounds(const Mesh& full) : full_(&full), moved_(full.face_count(), 0) {}
+DeviationBounds::DeviationBounds(const Mesh& full, double step)
+    : full_(&full), step_(step),
+      level_(full, measuring_options()),
+      measured_faces_(full.face_count()),
+      moved_(full.face_count(), 0) {}
 
 void DeviationBounds::add(const RemovalRecord& record) {
   float before = 0;
@@ -30,6 +58,14 @@ void DeviationBounds::add(const RemovalRecord& record) {
   bound_.push_back(round_up(measured_ + largest_moved_));
 }
 
-void DeviationBounds::end_round(const Connectivity& current) { (void)current; }
+void DeviationBounds::end_round(const Connectivity& current) {
+  const auto threshold = static_cast<double>(measured_faces_) * (1 - step_);
+  if (step_ <= 0 || bound_.empty() || static_cast<double>(current.face_count()) > threshold) return;
+  measured_ = level_.measure(current_level(*full_, current), largest_moved_).maximum_bound();
+  measured_faces_ = current.face_count();
+  std::fill(moved_.begin(), moved_.end(), 0.0F);
+  largest_moved_ = 0;
+  bound_.back() = round_up(std::min(static_cast<double>(bound_.back()), measured_));
+}
 
 }  // namespace lodestone::detail

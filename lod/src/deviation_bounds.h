@@ -6,13 +6,18 @@
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/removal.h>
+#include <lodestone/lod/level_deviation.h>
 
 namespace lodestone::detail {
 
 /// Bounds the two-sided distance between the full mesh and the mesh after each removal.
+///
+/// From time to time the mesh is measured. In between, each removal adds an upper bound of how far it moves the surface
+/// it replaces; the triangle inequality bounds the rest.
 class DeviationBounds {
  public:
-  explicit DeviationBounds(const Mesh& full);
+  /// Measures whenever a share `step` of the faces has gone since the last time; never where it is 0.
+  DeviationBounds(const Mesh& full, double step);
 
   /// Accounts for a removal that is about to be done.
   void add(const RemovalRecord& record);
@@ -25,9 +30,12 @@ class DeviationBounds {
 
  private:
   const Mesh* full_;
+  double step_;
+  LevelDeviation level_;
+  std::size_t measured_faces_;
   std::vector<float> moved_;  // by face: how far its points may lie from the last measured mesh
   double largest_moved_ = 0;
-  double measured_ = 0;       // bound of the last measured mesh
+  double measured_ = 0;  // bound of the last measured mesh
   std::vector<float> bound_;
 };
 

@@ -9,10 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "point_triangle.h"
+#include "triangle.h"
 
 namespace lodestone::detail {
 namespace {
@@ -38,26 +40,36 @@ struct Overlay {
   std::size_t next(std::size_t i) const { return i + 1 < ring.size() ? i + 1 : 0; }
 };
 
-Vec3 foot_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const double square = squared_length(b - a);
-  return square > 0 ? a + (b - a) * std::clamp(dot(p - a, b - a) / square, 0.0, 1.0) : a;
+Vec3 fine_normal(const Overlay& overlay) {
+  Vec3 normal;
+  for (std::size_t i = 0; i < overlay.sector.face_count(); ++i)
+    normal += cross(overlay.ring[i] - overlay.anchor, overlay.ring[overlay.next(i)] - overlay.anchor);
+  return normal;
+}
+
+Vec3 coarse_normal(const Overlay& overlay) {
+  Vec3 normal;
+  for (const PolygonTriangle t : overlay.sector.triangles)
+    normal += normalized(cross(overlay.ring[t.b] - overlay.ring[t.a], overlay.ring[t.c] - overlay.ring[t.a]));
+  return normal;
 }
 
 Overlay make_overlay(const Mesh& mesh, const SectorPatch& sector, const Vec3& center) {
   Overlay overlay{sector, center, center, {}, {}, {}};
   for (const Index wedge : sector.polygon) overlay.ring.push_back(Vec3(mesh.positions[mesh.wedge_vertex[wedge]]));
-  if (!sector.closed) overlay.anchor = foot_on_segment(center, overlay.ring.back(), overlay.ring.front());
-  Vec3 normal;
-  for (std::size_t i = 0; i < overlay.ring.size(); ++i)
-    normal += cross(overlay.ring[i] - overlay.anchor, overlay.ring[overlay.next(i)] - overlay.anchor);
-  normal = normalized(normal);
+  if (!sector.closed) overlay.anchor = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
+  return overlay;
+}
+
+void project(Overlay& overlay, const Vec3& direction) {
+  const Vec3 normal = normalized(direction);
   const Vec3 axis = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 u = normalized(cross(axis, normal));
   const Vec3 w = cross(normal, u);
-  const auto project = [&](const Vec3& p) { return Vec2{dot(p - center, u), dot(p - center, w)}; };
-  for (const Vec3& p : overlay.ring) overlay.plane_ring.push_back(project(p));
-  overlay.plane_center = project(overlay.anchor);
-  return overlay;
+  const auto to_plane = [&](const Vec3& p) { return Vec2{dot(p - overlay.center, u), dot(p - overlay.center, w)}; };
+  overlay.plane_ring.clear();
+  for (const Vec3& p : overlay.ring) overlay.plane_ring.push_back(to_plane(p));
+  overlay.plane_center = to_plane(overlay.anchor);
 }
 
 bool folds(const Overlay& overlay) {
@@ -70,7 +82,7 @@ bool folds(const Overlay& overlay) {
 
 /// The distance from the centre to the coarse surface's point over or under its anchor.
 double center_displacement(const Overlay& overlay) {
-  if (!overlay.sector.closed) return length(overlay.center - overlay.anchor);
+  if (!(overlay.anchor == overlay.center)) return length(overlay.center - overlay.anchor);
   double best_inside = -std::numeric_limits<double>::infinity();
   Vec3 target;
   for (const PolygonTriangle t : overlay.sector.triangles) {
@@ -78,7 +90,8 @@ double center_displacement(const Overlay& overlay) {
     const double area = cross2(overlay.plane_ring[c[0]], overlay.plane_ring[c[1]], overlay.plane_ring[c[2]]);
     std::array<double, 3> weight{};
     for (std::size_t i = 0; i < 3; ++i)
-      weight[i] = cross2(overlay.plane_center, overlay.plane_ring[c[(i + 1) % 3]], overlay.plane_ring[c[(i + 2) % 3]]) / area;
+      weight[i] =
+          cross2(overlay.plane_center, overlay.plane_ring[c[(i + 1) % 3]], overlay.plane_ring[c[(i + 2) % 3]]) / area;
     const double inside = *std::min_element(weight.begin(), weight.end());
     if (inside <= best_inside) continue;
     best_inside = inside;
@@ -128,18 +141,43 @@ double length_bound(const Overlay& overlay) {
   return largest;
 }
 
+/// A ring position as the mesh has it: the conversion back is exact.
+Vec3f stored(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
+
+/// The point of the coarse faces nearest to the centre.
+Vec3 nearest_coarse_point(const Overlay& overlay) {
+  Vec3 nearest;
+  double best = std::numeric_limits<double>::infinity();
+  for (const PolygonTriangle t : overlay.sector.triangles) {
+    const Vec3 p = nearest_on_triangle(
+        overlay.center, {stored(overlay.ring[t.a]), stored(overlay.ring[t.b]), stored(overlay.ring[t.c])});
+    if (squared_length(p - overlay.center) < best) best = squared_length(p - overlay.center), nearest = p;
+  }
+  return nearest;
+}
+
+/// The least bound that some direction of projection gives, with the centre where it is or slid to its nearest point.
+double sector_bound(Overlay overlay) {
+  if (overlay.ring.size() == 2)
+    return std::sqrt(squared_distance_to_segment(overlay.center, overlay.ring[0], overlay.ring[1]));
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    for (const Vec3& direction : {fine_normal(overlay), coarse_normal(overlay)}) {
+      project(overlay, direction);
+      if (!folds(overlay)) return overlay_displacement(overlay);
+    }
+    if (!overlay.sector.closed) break;
+    overlay.anchor = nearest_coarse_point(overlay);
+  }
+  return length_bound(overlay);
+}
+
 }  // namespace
 
 double displacement_bound(const Mesh& mesh, const RemovalRecord& record) {
   const Vec3 center(mesh.positions[record.vertex]);
   double largest = 0;
-  for (const SectorPatch& sector : record.sectors) {
-    const Overlay overlay = make_overlay(mesh, sector, center);
-    const double bound = sector.polygon.size() == 2
-                             ? std::sqrt(squared_distance_to_segment(center, overlay.ring[0], overlay.ring[1]))
-                             : (folds(overlay) ? length_bound(overlay) : overlay_displacement(overlay));
-    largest = std::max(largest, bound);
-  }
+  for (const SectorPatch& sector : record.sectors)
+    largest = std::max(largest, sector_bound(make_overlay(mesh, sector, center)));
   return largest;
 }
 

@@ -28,9 +28,7 @@ class FeatureLines {
   }
 
  private:
-  static std::uint64_t key(Index a, Index b) {
-    return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
-  }
+  static std::uint64_t key(Index a, Index b) { return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a; }
   std::vector<Index> take(Index a, Index b) {
     const auto node = removed_.extract(key(a, b));
     return node.empty() ? std::vector<Index>{} : std::move(node.mapped());

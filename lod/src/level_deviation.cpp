@@ -33,7 +33,8 @@ Triple bits_of(const Vec3f& p) {
 /// What names the faces of the original and of its levels alike: sorted corners, in the original's vertices.
 class FaceNames {
  public:
-  explicit FaceNames(const Mesh& original) : vertex_at_(original.vertex_count()), vertex_count_(original.vertex_count()) {
+  explicit FaceNames(const Mesh& original)
+      : vertex_at_(original.vertex_count()), vertex_count_(original.vertex_count()) {
     for (Index v = 0; v < vertex_count_; ++v) vertex_at_.insert(bits_of(original.positions[v]), v);
   }
 
@@ -82,14 +83,14 @@ struct LevelDeviation::Impl {
   PatchBound patch;
   FaceNames names;
   TripleTable original_faces;
-  std::vector<Index> face_at;         // A face at each of the original's vertices, by name; kNoIndex: none.
-  SurfaceBounds forward;              // Of the original, to the last level.
+  std::vector<Index> face_at;  // A face at each of the original's vertices, by name; kNoIndex: none.
+  SurfaceBounds forward;       // Of the original, to the last level.
 
-  TripleTable level_faces;            // Of the last level.
-  std::vector<double> level_bounds;   // Of the last level's faces, to the original.
-  Vec3 farthest_point;                // Of the original, from the last level.
-  Index farthest_face = kNoIndex;     // Of the level, from the original; as numbered now.
-  double farthest_distance = 0;       // Of farthest_face.
+  TripleTable level_faces;           // Of the last level.
+  std::vector<double> level_bounds;  // Of the last level's faces, to the original.
+  Vec3 farthest_point;               // Of the original, from the last level.
+  Index farthest_face = kNoIndex;    // Of the level, from the original; as numbered now.
+  double farthest_distance = 0;      // Of farthest_face.
 };
 
 LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
@@ -118,7 +119,7 @@ SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
   SurfaceBounds backward(level, false);
   TripleTable faces_now(level.face_count());
   std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.
-  std::vector<Index> same_face(level.face_count());                // The original's face for each of the level's.
+  std::vector<Index> same_face(level.face_count());            // The original's face for each of the level's.
   for (Index f = 0; f < level.face_count(); ++f) {
     const Triple name = face_name(level, vertex_names, f);
     faces_now.insert(name, f);

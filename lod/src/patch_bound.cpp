@@ -1,6 +1,6 @@
 // The degree of a map as a proof of coverage: see for instance J. Milnor, "Topology from the Differentiable Viewpoint",
-// 1965, section 5. The degree of the patch's projection is constant where its outline does not go, and it is the winding
-// number of the outline there.
+// 1965, section 5. The degree of the patch's projection is constant where its outline does not go, and it is the
+// winding number of the outline there.
 
 #include "patch_bound.h"
 
@@ -102,6 +102,7 @@ bool PatchBound::separated(const Points& triangle, const Points& other) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Point& p = other[i];
     const Point& q = other[(i + 1) % 3];
+    if (p.x == q.x && p.y == q.y) continue;  // No line: a border edge comes as a triangle of two points.
     const double inner = area2(p, q, other[(i + 2) % 3]);
     const double a = area2(p, q, triangle[0]);
     const double b = area2(p, q, triangle[1]);

@@ -49,8 +49,8 @@ void squared_distances(const PointBatch& points, const std::array<Vec3, 3>& tria
     const float x = px[i], y = py[i], z = pz[i];
     const float height = (x - e0.start.x) * n.x + (y - e0.start.y) * n.y + (z - e0.start.z) * n.z;
     const float side = std::min(std::min(e0.side(x, y, z), e1.side(x, y, z)), e2.side(x, y, z));
-    const float edge = std::min(std::min(e0.squared_distance(x, y, z), e1.squared_distance(x, y, z)),
-                                e2.squared_distance(x, y, z));
+    const float edge =
+        std::min(std::min(e0.squared_distance(x, y, z), e1.squared_distance(x, y, z)), e2.squared_distance(x, y, z));
     const float plane = height * height;
     out[i] = side > 0 ? plane : edge;
   }

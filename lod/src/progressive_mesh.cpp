@@ -29,7 +29,8 @@ Result<void> expect_size(const char* name, std::size_t size, std::size_t expecte
 /// Checks that a prefix-sum array starts at `first`, never falls and ends at `last`.
 template <class T>
 Result<void> expect_offsets(const char* name, const std::vector<T>& offsets, std::uint64_t first, std::uint64_t last) {
-  if (offsets.empty() || offsets.front() != first || offsets.back() != last || !std::is_sorted(offsets.begin(), offsets.end()))
+  if (offsets.empty() || offsets.front() != first || offsets.back() != last ||
+      !std::is_sorted(offsets.begin(), offsets.end()))
     return defect(std::string(name) + " does not rise from " + std::to_string(first) + " to " + std::to_string(last));
   return {};
 }
@@ -52,7 +53,8 @@ Result<void> check_arrays(const ProgressiveMesh& mesh) {
           expect_size("positions", mesh.positions.size(), mesh.base_vertex_count + records),
           expect_offsets("sector_begin", mesh.sector_begin, 0, mesh.sectors.size()),
           expect_offsets("polygon_begin", mesh.polygon_begin, 0, mesh.polygons.size()),
-          expect_offsets("record_wedge_begin", mesh.record_wedge_begin, mesh.base_wedge_count, mesh.wedge_vertex.size()),
+          expect_offsets("record_wedge_begin", mesh.record_wedge_begin, mesh.base_wedge_count,
+                         mesh.wedge_vertex.size()),
           expect_offsets("round_begin", mesh.round_begin, 0, records),
       });
       !ok)

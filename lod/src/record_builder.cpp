@@ -106,8 +106,7 @@ void RecordBuilder::write_record(std::size_t removal, ProgressiveMesh& result, c
     header.closed = closed_[s];
     header.wedge = static_cast<std::uint8_t>(numbers.wedge[center_[s]] - first_wedge);
     result.sectors.push_back(header);
-    for (std::size_t i = 0; i < size; ++i)
-      result.polygons.push_back(numbers.wedge[polygons_[polygon_begin_[s] + i]]);
+    for (std::size_t i = 0; i < size; ++i) result.polygons.push_back(numbers.wedge[polygons_[polygon_begin_[s] + i]]);
     result.polygon_begin.push_back(result.polygons.size());
     const std::size_t first_triangle = polygon_begin_[s] - 2 * s;
     for (std::size_t i = 0; i + 2 < size; ++i) {

@@ -14,12 +14,13 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinNormalCosine = 0.2;     // a new face may turn this far from the old one at its rim
-constexpr double kMinShape = 1e-3;           // a new face's height over its longest edge
-constexpr std::size_t kFullyRanked = 3;      // triangulations, by swept volume, whose distances are measured      // triangulations, by swept volume, that are measured in full
-constexpr double kLineWeight = 1;            // of a border's or feature line's own displacement
+constexpr double kMinNormalCosine = 0.2;      // a new face may turn this far from the old one at its rim
+constexpr double kMinShape = 1e-3;            // a new face's height over its longest edge
+constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured      //
+                                              // triangulations, by swept volume, that are measured in full
+constexpr double kLineWeight = 1;             // of a border's or feature line's own displacement
 constexpr double kTieBreak = 0.2;             // weight of the volume swept, as a length, against a pure curvature error
-constexpr double kMinCurvatureChange = 1e-4; // radians; below it curvature no longer separates removals
+constexpr double kMinCurvatureChange = 1e-4;  // radians; below it curvature no longer separates removals
 
 double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
   return 0.25 * length(b - a) * angle_between(normal_a, normal_b);
@@ -52,8 +53,7 @@ Verdict RemovalEvaluator::gather(Index vertex, RemovalRecord& record) {
   mesh.gather_star(vertex, star_);
   if (star_.corners.size() > kMaxRing) return Verdict::Ring;
   const VertexKind kind = mesh.kind(vertex, star_);
-  if (kind != VertexKind::Interior && kind != VertexKind::Border && kind != VertexKind::Feature)
-    return Verdict::Locked;
+  if (kind != VertexKind::Interior && kind != VertexKind::Border && kind != VertexKind::Feature) return Verdict::Locked;
   record.vertex = vertex;
   describe_sectors(mesh, star_, record.sectors);
   center_ = Vec3(state_->mesh.positions[vertex]);
@@ -291,7 +291,8 @@ int RemovalEvaluator::best_by_curvature(Sector& sector) {
   return std::min_element(ranked_.begin(), ranked_.end())->second;
 }
 
-/// What orders removals that leave the curvature (nearly) as it is, as on any developable surface: the volume they sweep.
+/// What orders removals that leave the curvature (nearly) as it is, as on any developable surface: the volume they
+/// sweep.
 double RemovalEvaluator::tie_break(double squared_volume) const {
   return kTieBreak * tie_scale_ * std::cbrt(std::sqrt(squared_volume));
 }

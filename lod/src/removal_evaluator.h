@@ -41,7 +41,8 @@ class RemovalEvaluator {
   RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options);
 
   /// Evaluates a removal. Where it is legal, `record` holds the sectors with the triangles chosen.
-  /// `choice` names the triangulations chosen; where it comes with a choice that is still admissible, no other is tried.
+  /// `choice` names the triangulations chosen; where it comes with a choice that is still admissible, no other is
+  /// tried.
   Evaluation evaluate(Index vertex, RemovalRecord& record, Choice& choice);
 
  private:
@@ -118,22 +119,22 @@ class RemovalEvaluator {
   std::vector<Sector> sectors_;
   std::vector<Index> ring_vertex_;
   std::vector<Vec3> ring_position_;
-  std::vector<Index> fine_corner_;          // the star's corners at the vertex, in ring order
-  std::vector<Vec3> fine_normal_;           // of the star's faces
-  std::vector<Vec3> outer_normal_;          // of the faces beyond the rim; unset at a border
+  std::vector<Index> fine_corner_;  // the star's corners at the vertex, in ring order
+  std::vector<Vec3> fine_normal_;   // of the star's faces
+  std::vector<Vec3> outer_normal_;  // of the faces beyond the rim; unset at a border
   std::vector<std::uint8_t> has_outer_;
-  std::vector<VertexCurvature> outside_;    // the ring's curvature without the star
-  std::vector<VertexCurvature> after_;      // and with a retriangulation
-  std::vector<std::uint8_t> linked_;        // which ring vertices an edge joins
-  std::vector<Index> ring_of_vertex_;       // by vertex, kNoIndex outside the ring
-  PointBatch points_;                       // the sector's carried points
-  std::vector<float> weights_;              // of those points
+  std::vector<VertexCurvature> outside_;  // the ring's curvature without the star
+  std::vector<VertexCurvature> after_;    // and with a retriangulation
+  std::vector<std::uint8_t> linked_;      // which ring vertices an edge joins
+  std::vector<Index> ring_of_vertex_;     // by vertex, kNoIndex outside the ring
+  PointBatch points_;                     // the sector's carried points
+  std::vector<float> weights_;            // of those points
   std::vector<float> nearest_;
   std::vector<Triangle> table_;
   Triangle untabulated_;
   std::vector<std::pair<double, int>> ranked_;
   std::vector<PolygonTriangle> fan_;
-  std::vector<Vec3> edge_normal_;           // of coarse faces, by directed polygon edge
+  std::vector<Vec3> edge_normal_;  // of coarse faces, by directed polygon edge
   std::vector<std::uint8_t> has_edge_normal_;
 };
 

@@ -32,7 +32,7 @@ class Simplifier {
         state_{mesh, std::move(connectivity), CarriedPoints(mesh), {}, {}, {}},
         evaluator_(state_, options_),
         builder_(mesh),
-        bounds_(mesh) {}
+        bounds_(mesh, options.measure_step) {}
 
   SimplifyResult run();
 
@@ -164,8 +164,7 @@ bool Simplifier::run_round() {
     if (target_met()) break;
     removed_any = try_remove(vertex) || removed_any;
   }
-  for (const Index v : dirty_)
-    state_.curvature[v] = vertex_curvature(state_.mesh, state_.connectivity, VertexId{v});
+  for (const Index v : dirty_) state_.curvature[v] = vertex_curvature(state_.mesh, state_.connectivity, VertexId{v});
   for (const Index v : dirty_) evaluate(v);
   builder_.end_round();
   ++round_;
@@ -178,11 +177,20 @@ BlockedCounts Simplifier::count_blocked() const {
   for (Index v = 0; v < verdict_.size(); ++v) {
     if (!state_.connectivity.has_vertex(v)) continue;
     switch (verdict_[v]) {
-      case Verdict::Legal: break;
-      case Verdict::Locked: ++blocked.locked; break;
-      case Verdict::Flip: ++blocked.flip; break;
-      case Verdict::Link: ++blocked.link; break;
-      case Verdict::Ring: ++blocked.ring; break;
+      case Verdict::Legal:
+        break;
+      case Verdict::Locked:
+        ++blocked.locked;
+        break;
+      case Verdict::Flip:
+        ++blocked.flip;
+        break;
+      case Verdict::Link:
+        ++blocked.link;
+        break;
+      case Verdict::Ring:
+        ++blocked.ring;
+        break;
     }
   }
   return blocked;

@@ -176,7 +176,7 @@ bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
 }
 
 PieceCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
-  ++queries; const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
+  const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
   const PieceCorner corner{point, hit.distance, hit.face};
   if (hit.distance > largest_distance_) {
     assume(from_face, hit.distance, goal);

@@ -77,7 +77,6 @@ class SupremumSearch {
 
   /// Lowers the faces' bounds as far as the goal asks and queries at vertices can.
   void visit_vertices(Goal& goal);
-  std::size_t queries = 0;
   /// Splits faces until all bounds meet the goal or `budget` queries are spent.
   void split_faces(Goal& goal, std::size_t budget);
 

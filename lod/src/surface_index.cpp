@@ -25,10 +25,10 @@ namespace {
 using detail::Triangle;
 
 constexpr std::size_t kWidth = 4;
-constexpr float kBoxSlack = 1e-6f;           // Absolute, of the unit scale: four times the rounding at coordinates of 1.
-constexpr double kFarSlack = 1 + 4e-6;       // Relative, of squared distances: for points far outside the unit box.
-constexpr float kFarthest = 1e9f;            // Coordinates of points are clamped here: their squares stay finite.
-constexpr std::size_t kStackSize = 64;       // Three entries stay behind on each of at most 17 levels.
+constexpr float kBoxSlack = 1e-6f;      // Absolute, of the unit scale: four times the rounding at coordinates of 1.
+constexpr double kFarSlack = 1 + 4e-6;  // Relative, of squared distances: for points far outside the unit box.
+constexpr float kFarthest = 1e9f;       // Coordinates of points are clamped here: their squares stay finite.
+constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each of at most 17 levels.
 
 /// A box by its centre and half size along each axis; the default contains nothing.
 struct CentredBox {

@@ -23,9 +23,9 @@ enum class VertexKind : std::uint8_t {
 
 /// The faces around one vertex, counter-clockwise, and where constrained edges cut them into sectors.
 ///
-/// `corners[i]` is face i's corner at the vertex. In an open ring face 0 follows the border. Where there are constrained
-/// edges inside, face 0 follows one of them. `sector_begin` holds the first face of each sector: {0} without constrained
-/// edges inside.
+/// `corners[i]` is face i's corner at the vertex. In an open ring face 0 follows the border. Where there are
+/// constrained edges inside, face 0 follows one of them. `sector_begin` holds the first face of each sector: {0}
+/// without constrained edges inside.
 struct Star {
   std::vector<Index> corners;
   std::vector<Index> sector_begin;

@@ -25,11 +25,11 @@ std::size_t component_bytes(ComponentType type);
 
 /// One attribute of every wedge, kept as the bytes it came in: attributes are moved and compared, never interpolated.
 struct Attribute {
-  std::string name;                            ///< glTF semantic, e.g. NORMAL, TEXCOORD_0, COLOR_0
+  std::string name;  ///< glTF semantic, e.g. NORMAL, TEXCOORD_0, COLOR_0
   ComponentType type = ComponentType::Float32;
-  std::uint8_t component_count = 0;            ///< 1 to 16
-  bool normalized = false;                     ///< integers stand for [0, 1] or [−1, 1]
-  std::vector<std::byte> data;                 ///< element_bytes() for each wedge, tightly packed
+  std::uint8_t component_count = 0;  ///< 1 to 16
+  bool normalized = false;           ///< integers stand for [0, 1] or [−1, 1]
+  std::vector<std::byte> data;       ///< element_bytes() for each wedge, tightly packed
 
   std::size_t element_bytes() const { return component_bytes(type) * component_count; }
 };
@@ -39,11 +39,11 @@ struct Attribute {
 /// A *vertex* is a position. A *wedge* is one attribute set at a vertex: a vertex on a seam has several. A *corner* is
 /// 3·face + i; it names a wedge, which names a vertex. Faces wind counter-clockwise seen from outside.
 struct Mesh {
-  std::vector<Vec3f> positions;          ///< one per vertex
-  std::vector<Index> wedge_vertex;       ///< one per wedge: its vertex, < vertex_count()
-  std::vector<Index> corner_wedge;       ///< three per face: the wedges, < wedge_count()
-  std::vector<Index> face_material;      ///< one per face, or empty: every face has material 0
-  std::vector<Attribute> attributes;     ///< any number; each with one element per wedge
+  std::vector<Vec3f> positions;       ///< one per vertex
+  std::vector<Index> wedge_vertex;    ///< one per wedge: its vertex, < vertex_count()
+  std::vector<Index> corner_wedge;    ///< three per face: the wedges, < wedge_count()
+  std::vector<Index> face_material;   ///< one per face, or empty: every face has material 0
+  std::vector<Attribute> attributes;  ///< any number; each with one element per wedge
 
   std::size_t vertex_count() const { return positions.size(); }
   std::size_t wedge_count() const { return wedge_vertex.size(); }

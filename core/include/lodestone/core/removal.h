@@ -27,8 +27,8 @@ struct SectorPatch {
 /// What one removal needs to be undone.
 struct RemovalRecord {
   Index vertex = kNoIndex;
-  Index vertex_corner = kNoIndex;          ///< the vertex's anchor before the removal
-  std::vector<SectorPatch> sectors;        ///< one, or two where a feature line passes through the vertex
+  Index vertex_corner = kNoIndex;    ///< the vertex's anchor before the removal
+  std::vector<SectorPatch> sectors;  ///< one, or two where a feature line passes through the vertex
 };
 
 /// Fills `sectors` with the polygons around a vertex, one for each sector of its star; `triangles` stay empty.

@@ -24,9 +24,7 @@ std::span<const PolygonTriangle> triangulation(int size, int which);
 
 /// Returns triangle (a, b, c)'s number among all triangles of a polygon of at most kMaxTabulatedPolygon corners:
 /// C(c,3) + C(b,2) + a, which does not depend on the polygon's size.
-constexpr int triangle_number(PolygonTriangle t) {
-  return t.c * (t.c - 1) * (t.c - 2) / 6 + t.b * (t.b - 1) / 2 + t.a;
-}
+constexpr int triangle_number(PolygonTriangle t) { return t.c * (t.c - 1) * (t.c - 2) / 6 + t.b * (t.b - 1) / 2 + t.a; }
 
 /// Triangles of the largest tabulated polygon.
 inline constexpr int kTriangleNumberCount =
