@@ -78,6 +78,9 @@ struct Asset {
 /// Errors: Unreadable, Malformed, LimitExceeded, Unsupported.
 Result<Asset> read_asset(const std::filesystem::path& path);
 
+/// Reads the same from memory. Errors: Malformed, LimitExceeded, Unsupported.
+Result<Asset> read_asset_bytes(std::span<const std::byte> bytes);
+
 /// Reads only the removal stream of a .glb. Errors: as above; Unsupported where the file has none.
 Result<std::vector<std::byte>> read_asset_stream(const std::filesystem::path& path);
 

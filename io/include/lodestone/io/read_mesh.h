@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,16 @@ struct MeshFile {
 
 /// Reads triangles from OBJ, PLY, STL, glTF or GLB (by content, then by extension), or whatever Assimp knows.
 ///
-/// OBJ coordinates are correctly rounded. A glTF scene is flattened into world space; of a multi-LOD file the finest
-/// level is read. Draco, KHR_mesh_quantization and meshopt compression are decoded.
+/// Coordinates are the correctly rounded floats of what the file says (not promised for Assimp's formats). A glTF scene
+/// is flattened into world space; of a multi-LOD file the finest level is read. Draco, KHR_mesh_quantization and
+/// meshopt compression are decoded. Attributes keep the file's types; texture coordinates follow glTF, v downwards.
+/// A face's material is 0 where the file names none, else a number from 1: glTF's material index + 1, elsewhere in
+/// order of first use.
 /// Errors: Unreadable, Malformed, LimitExceeded, Unsupported; messages name the file's part and its numbers.
 Result<MeshFile> read_mesh(const std::filesystem::path& path);
+
+/// Reads the same from memory; `extension` ("obj", "gltf", … or "") decides where the content does not.
+/// A .gltf may then have no files of its own. Errors: as above.
+Result<MeshFile> read_mesh_bytes(std::span<const std::byte> bytes, const std::string& extension);
 
 }  // namespace lodestone

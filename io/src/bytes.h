@@ -1,0 +1,38 @@
+#pragma once
+
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace lodestone::detail {
+
+static_assert(std::endian::native == std::endian::little, "files are little-endian and are read as they lie in memory");
+
+/// Copies a value out of bytes that need not be aligned. Pre: it lies inside.
+template <class T>
+T load(std::span<const std::byte> bytes, std::size_t at) {
+  assert(at <= bytes.size() && sizeof(T) <= bytes.size() - at);
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+inline std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t at) { return load<std::uint32_t>(bytes, at); }
+inline float load_f32(std::span<const std::byte> bytes, std::size_t at) { return load<float>(bytes, at); }
+
+/// Appends a value's bytes.
+template <class T>
+void append(std::vector<std::byte>& out, const T& value) {
+  const auto* first = reinterpret_cast<const std::byte*>(&value);
+  out.insert(out.end(), first, first + sizeof value);
+}
+
+inline void append_bytes(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+}  // namespace lodestone::detail

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+#include <lodestone/core/result.h>
+
+#include "gltf_document.h"
+
+namespace lodestone::detail {
+
+/// The triangles of one primitive, with the points they use.
+struct Primitive {
+  std::vector<Vec3f> positions;
+  std::vector<Attribute> attributes;  ///< NORMAL and TANGENT as floats, the others as the file stores them
+  std::vector<Index> indices;         ///< three per triangle, < positions.size()
+  Index material = 0;                 ///< the document's material + 1; 0: none
+};
+
+/// What primitives hold that is not read.
+struct PrimitiveOmissions {
+  std::size_t points_and_lines = 0;  ///< primitives
+  std::size_t morph_targets = 0;     ///< of all primitives
+};
+
+/// Reads primitives of a document; keeps decoded accessors while several primitives of a mesh share them.
+class PrimitiveReader {
+ public:
+  explicit PrimitiveReader(const GltfDocument& document) : document_(document) {}
+
+  /// Reads the primitives of a mesh that have triangles. Strips and fans become triangles.
+  Result<std::vector<Primitive>> read_mesh(std::size_t mesh);
+
+  const PrimitiveOmissions& omissions() const { return omissions_; }
+
+ private:
+  Result<Primitive> read_plain(const Json& json, std::size_t mode, const std::string& where);
+  Result<Primitive> read_draco(const Json& json, const Json& extension, std::size_t mode, const std::string& where);
+  Result<const AccessorData*> accessor(std::size_t index);
+
+  const GltfDocument& document_;
+  std::map<std::size_t, AccessorData> accessors_;
+  PrimitiveOmissions omissions_;
+};
+
+/// Returns the bufferViews a mesh's geometry lies in, each once, ascending.
+Result<std::vector<std::size_t>> geometry_views(const GltfDocument& document, std::size_t mesh);
+
+/// True if any primitive of the mesh is compressed with Draco.
+bool uses_draco(const GltfDocument& document, std::size_t mesh);
+
+}  // namespace lodestone::detail

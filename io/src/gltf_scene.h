@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <lodestone/core/result.h>
+
+#include "gltf_document.h"
+#include "transform.h"
+
+namespace lodestone::detail {
+
+/// A mesh of the document at a place in the world.
+struct MeshInstance {
+  std::size_t node = 0;  ///< the node that holds it, or kNoNode
+  std::size_t mesh = 0;
+  Transform world;
+};
+
+inline constexpr std::size_t kNoNode = static_cast<std::size_t>(-1);
+
+/// Returns how many levels of detail the nodes offer by MSFT_lod: 1 for an ordinary document.
+Result<std::size_t> level_count(const GltfDocument& document);
+
+/// Lists the meshes of the default scene (else of the first; else of all root nodes; else, without any node, all
+/// meshes), in the order of a walk from the roots. A node with MSFT_lod is replaced by that of its level `level`, 0
+/// being the finest, or by its last where it has fewer. A skinned mesh stays where its vertices say: glTF ignores the
+/// transform of its node.
+/// Errors: Malformed for nodes that do not exist, have two parents or are their own ancestors.
+Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document, std::size_t level);
+
+/// Returns the first node that has levels of detail by MSFT_lod, as [finest, …, coarsest]; empty where there is none.
+Result<std::vector<std::size_t>> first_lod_chain(const GltfDocument& document);
+
+}  // namespace lodestone::detail

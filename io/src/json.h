@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <lodestone/core/result.h>
+
+namespace lodestone::detail {
+
+/// Keeps members in the order they came in, so that what we write is deterministic and what we keep stays as it was.
+using Json = nlohmann::ordered_json;
+
+/// Parses UTF-8 text. Errors: Malformed with the offset; LimitExceeded where it nests deeper than any sane document,
+/// since writing it out again recurses.
+Result<Json> parse_json(std::string_view text);
+
+/// Returns the member of an object, or null where there is none or `value` is no object.
+const Json* find_member(const Json& value, const char* key);
+
+/// Returns a member that must be a whole number ≥ 0. `where` names the object for messages, e.g. "accessor 3".
+Result<std::size_t> size_member(const Json& object, const char* key, std::string_view where);
+/// The same, with a value for where the member is missing.
+Result<std::size_t> size_member_or(const Json& object, const char* key, std::size_t fallback, std::string_view where);
+
+/// Returns the member as a string, or "" where there is none or it is something else.
+std::string string_member(const Json& object, const char* key);
+/// Returns the member as a number, or `fallback` where there is none or it is something else.
+double number_member(const Json& object, const char* key, double fallback);
+
+/// Reads an array of whole numbers ≥ 0; empty where the member is missing.
+Result<std::vector<std::size_t>> size_array_member(const Json& object, const char* key, std::string_view where);
+/// Reads an array of exactly `count` numbers; empty where the member is missing.
+Result<std::vector<double>> number_array_member(const Json& object, const char* key, std::size_t count,
+                                                std::string_view where);
+
+}  // namespace lodestone::detail

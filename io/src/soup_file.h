@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/assemble.h>
+#include <lodestone/core/result.h>
+
+namespace lodestone::detail {
+
+/// What a format's reader returns: triangles, and one sentence for each thing that was left out or changed.
+struct SoupFile {
+  TriangleSoup soup;
+  std::vector<std::string> notes;
+};
+
+/// Fetches a file that lies beside or below the one being read, by its relative path.
+using FileFetcher = std::function<Result<std::vector<std::byte>>(const std::filesystem::path& relative)>;
+
+Result<SoupFile> read_obj(std::span<const std::byte> bytes);
+Result<SoupFile> read_stl(std::span<const std::byte> bytes);
+Result<SoupFile> read_ply(std::span<const std::byte> bytes);
+Result<SoupFile> read_gltf(std::span<const std::byte> bytes, const FileFetcher& fetch);
+/// Reads any other format Assimp knows; `extension` is without the dot.
+Result<SoupFile> read_with_assimp(std::span<const std::byte> bytes, const std::string& extension);
+
+/// Gives float normals length 1 where they miss it by more than rounding, and a direction where they have none:
+/// writers may then rely on the rule of glTF that normals are unit vectors. Pre: indices are in range.
+void tidy_normals(SoupFile& file);
+
+/// Returns the bytes as text, unchecked.
+inline std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Makes an attribute of floats from values that lie one after the other.
+Attribute float_attribute(std::string name, std::uint8_t component_count, std::span<const float> values);
+
+}  // namespace lodestone::detail

@@ -1,0 +1,427 @@
+// The nearest-point structure against all faces, the narrowed maximum against dense samples, and both against Metro.
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <lodestone/core/assemble.h>
+#include <lodestone/io/read_mesh.h>
+#include <lodestone/lod/deviation.h>
+#include <lodestone/lod/level_deviation.h>
+
+#include "support/catch.h"
+#include "support/data.h"
+#include "support/random.h"
+#include "support/shapes.h"
+
+namespace lodestone::test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Mesh mesh_of(const TriangleSoup& soup) { return assemble(soup).value().mesh; }
+
+/// A mesh as it is, with nothing joined or dropped.
+Mesh raw_mesh(std::vector<Vec3f> positions, std::vector<Index> corners) {
+  Mesh mesh;
+  for (Index v = 0; v < positions.size(); ++v) mesh.wedge_vertex.push_back(v);
+  mesh.positions = std::move(positions);
+  mesh.corner_wedge = std::move(corners);
+  return mesh;
+}
+
+Vec3f random_point(Random& random, double size) {
+  const auto coordinate = [&] { return static_cast<float>(size * random.signed_unit()); };
+  return {coordinate(), coordinate(), coordinate()};
+}
+
+/// Triangles between random points; some of them needles, segments and points.
+Mesh random_soup(std::uint64_t seed, int face_count, double size) {
+  Random random(seed);
+  std::vector<Vec3f> positions;
+  std::vector<Index> corners;
+  for (int f = 0; f < face_count; ++f) {
+    Vec3f a = random_point(random, size), b = random_point(random, size), c = random_point(random, size);
+    const std::uint64_t kind = random.below(8);
+    if (kind == 0) c = b;
+    if (kind == 1) b = c = a;
+    if (kind == 2) c = {b.x + static_cast<float>(1e-6 * size), b.y, b.z};
+    for (const Vec3f& p : {a, b, c}) {
+      corners.push_back(static_cast<Index>(positions.size()));
+      positions.push_back(p);
+    }
+  }
+  return raw_mesh(std::move(positions), std::move(corners));
+}
+
+Mesh scaled(Mesh mesh, double factor) {
+  for (Vec3f& p : mesh.positions) {
+    p = {static_cast<float>(p.x * factor), static_cast<float>(p.y * factor), static_cast<float>(p.z * factor)};
+  }
+  return mesh;
+}
+
+Mesh shifted(Mesh mesh, float x, float y, float z) {
+  for (Vec3f& p : mesh.positions) p = {p.x + x, p.y + y, p.z + z};
+  return mesh;
+}
+
+double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double ee = squared_length(b - a);
+  const double t = ee > 0 ? std::clamp(dot(p - a, b - a) / ee, 0.0, 1.0) : 0;
+  return length(p - (a + (b - a) * t));
+}
+
+/// The distance to a triangle from its definition: to its edges, or to its plane where the foot is inside.
+double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  double distance = std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
+  const Vec3 n = normalized(cross(b - a, c - a));
+  const Vec3 foot = p - n * dot(p - a, n);
+  const bool inside = dot(cross(b - a, foot - a), n) > 0 && dot(cross(c - b, foot - b), n) > 0 &&
+                      dot(cross(a - c, foot - c), n) > 0;
+  return inside ? std::min(distance, length(p - foot)) : distance;
+}
+
+double distance_to_all(const Vec3& p, const Mesh& mesh) {
+  double distance = kInfinity;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    distance = std::min(distance, triangle_distance(p, mesh.corner_position(3 * f), mesh.corner_position(3 * f + 1),
+                                                    mesh.corner_position(3 * f + 2)));
+  }
+  return distance;
+}
+
+/// A range that certainly holds the supremum: dense samples, and how far any point may be from one.
+struct SampledSupremum {
+  double low = 0;
+  double high = 0;
+};
+
+SampledSupremum sample_supremum(const Mesh& from, const Mesh& to, int steps) {
+  const SurfaceIndex index(to);
+  SampledSupremum result;
+  for (Index f = 0; f < from.face_count(); ++f) {
+    const Vec3 a = from.corner_position(3 * f), b = from.corner_position(3 * f + 1), c = from.corner_position(3 * f + 2);
+    double largest = 0;
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; i + j <= steps; ++j) {
+        const Vec3 p = a + (b - a) * (1.0 * i / steps) + (c - a) * (1.0 * j / steps);
+        largest = std::max(largest, index.nearest(p, kInfinity).distance);
+      }
+    }
+    const double spacing = std::max({length(b - a), length(c - b), length(a - c)}) / steps;
+    result.low = std::max(result.low, largest);
+    result.high = std::max(result.high, largest + spacing);
+  }
+  return result;
+}
+
+/// The vertices of each cell of a grid become the first of them: a level with some of the mesh's vertices, never clean.
+Mesh clustered(const Mesh& mesh, double cell) {
+  std::map<std::tuple<long, long, long>, Index> first;
+  std::vector<Index> kept(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    const Vec3f& p = mesh.positions[v];
+    kept[v] = first.emplace(std::tuple{std::lround(p.x / cell), std::lround(p.y / cell), std::lround(p.z / cell)}, v)
+                  .first->second;
+  }
+  std::vector<Index> corners;
+  for (Index c = 0; c < mesh.corner_wedge.size(); c += 3) {
+    const Index x = kept[mesh.corner_vertex(c)], y = kept[mesh.corner_vertex(c + 1)], z = kept[mesh.corner_vertex(c + 2)];
+    if (x != y && y != z && z != x) corners.insert(corners.end(), {x, y, z});
+  }
+  return raw_mesh(mesh.positions, std::move(corners));
+}
+
+/// The mesh without a share of its faces, chosen by the seed.
+Mesh with_holes(const Mesh& mesh, double share, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Index> corners;
+  for (Index c = 0; c < mesh.corner_wedge.size(); c += 3) {
+    if (random.unit() < share) continue;
+    for (Index i = 0; i < 3; ++i) corners.push_back(mesh.corner_vertex(c + i));
+  }
+  return raw_mesh(mesh.positions, std::move(corners));
+}
+
+void check_contains(const OneSidedDeviation& found, const SampledSupremum& sampled) {
+  CHECK(found.maximum <= found.maximum_bound);
+  CHECK(found.maximum <= sampled.high * (1 + 1e-9) + 1e-12);
+  CHECK(found.maximum_bound >= sampled.low * (1 - 1e-9) - 1e-12);
+}
+
+double allowed(double maximum, const DeviationOptions& options, double diagonal) {
+  const double absolute = options.absolute_tolerance > 0 ? options.absolute_tolerance : 1e-7 * diagonal;
+  return (maximum * (1 + options.relative_tolerance) + absolute) * (1 + 1e-9);
+}
+
+bool near(double value, double expected, double relative, double absolute = 0) {
+  return std::abs(value - expected) <= relative * std::abs(expected) + absolute;
+}
+
+bool overlap(const Deviation& a, const Deviation& b) {
+  return a.maximum() <= b.maximum_bound() + 1e-12 && b.maximum() <= a.maximum_bound() + 1e-12;
+}
+
+}  // namespace
+
+TEST_CASE("the nearest point is that of all faces, whatever the scale and the hint") {
+  const double size = GENERATE(1.0, 1e-20, 1e15);
+  Random random(11);
+  for (std::uint64_t seed = 0; seed < (kReduced ? 4 : 20); ++seed) {
+    const Mesh mesh = random_soup(seed, 1 + static_cast<int>(random.below(90)), size);
+    const SurfaceIndex index(mesh);
+    for (int i = 0; i < 50; ++i) {
+      const double reach = i % 5 == 0 ? 1e4 : 1.5;
+      const Vec3 p = i % 7 == 0 ? mesh.corner_position(static_cast<Index>(random.below(mesh.corner_wedge.size())))
+                                : Vec3(random_point(random, reach * size));
+      const SurfaceIndex::Hit hit = index.nearest(p, kInfinity);
+      REQUIRE(hit.face < mesh.face_count());
+      CHECK(near(hit.distance, distance_to_all(p, mesh), 1e-9, 1e-12 * size));
+      CHECK(near(length(p - hit.point), hit.distance, 0, 1e-12 * size));
+      CHECK(index.distance_to_face(p, hit.face) == hit.distance);
+
+      const SurfaceIndex::Hit hinted = index.nearest(p, kInfinity, static_cast<Index>(random.below(mesh.face_count())));
+      CHECK(hinted.face == hit.face);
+      CHECK(hinted.distance == hit.distance);
+      CHECK(index.nearest(p, hit.distance * 1.001, hit.face).face == hit.face);
+      if (hit.distance > 0) {
+        CHECK(index.nearest(p, hit.distance * 0.999).face == kNoIndex);
+        CHECK(index.nearest(p, hit.distance * 0.999, hit.face).distance == kInfinity);
+      }
+    }
+  }
+}
+
+TEST_CASE("equally near faces: the lowest is named") {
+  const Mesh mesh = mesh_of(grid(8, 0, 1));
+  const SurfaceIndex index(mesh);
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
+      const SurfaceIndex::Hit hit = index.nearest(mesh.corner_position(corner), kInfinity, f);
+      CHECK(hit.distance == 0);
+      CHECK(hit.face <= f);
+    }
+  }
+}
+
+TEST_CASE("an empty surface has no nearest point") {
+  const SurfaceIndex index{Mesh{}};
+  CHECK(index.empty());
+  const SurfaceIndex::Hit hit = index.nearest({1, 2, 3}, kInfinity);
+  CHECK(hit.face == kNoIndex);
+  CHECK(hit.distance == kInfinity);
+}
+
+TEST_CASE("empty meshes deviate by infinity from others and not from each other") {
+  const Mesh mesh = mesh_of(tetrahedron());
+  CHECK(measure_deviation(Mesh{}, Mesh{}).maximum_bound() == 0);
+  CHECK(measure_deviation(mesh, Mesh{}).forward.mean == kInfinity);
+  CHECK(measure_deviation(Mesh{}, mesh).maximum() == kInfinity);
+  CHECK(measure_maximum(mesh, SurfaceIndex(mesh), Mesh{}, {}).maximum() == kInfinity);
+  LevelDeviation levels(mesh);
+  CHECK(levels.measure(Mesh{}).maximum() == kInfinity);
+  CHECK(levels.measure(mesh).maximum_bound() < 1e-6);
+}
+
+TEST_CASE("every shape equals itself") {
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const Mesh mesh = mesh_of(shape.soup);
+    DeviationOptions options;
+    options.sample_count = 500;
+    const Deviation deviation = measure_deviation(mesh, mesh, options);
+    CHECK(deviation.maximum_bound() <= allowed(0, options, bounding_box(mesh).diagonal()));
+    CHECK(deviation.forward.mean <= 1e-7);
+    CHECK(deviation.mean_normal_angle < 0.01);
+  }
+}
+
+TEST_CASE("parallel planes and concentric spheres deviate as computed by hand") {
+  const Mesh plane = mesh_of(grid(5, 0, 1));
+  const Deviation planes = measure_deviation(plane, shifted(mesh_of(grid(7, 0, 1)), 0, 0, 0.25F));
+  for (const OneSidedDeviation& side : {planes.forward, planes.backward}) {
+    CHECK(near(side.maximum, 0.25, 1e-6));
+    CHECK(near(side.maximum_bound, 0.25, 0.0011));
+    CHECK(near(side.mean, 0.25, 1e-6));
+    CHECK(near(side.rms, 0.25, 1e-6));
+  }
+  CHECK(near(planes.mean_normal_angle, 0, 0, 1e-9));
+
+  const Mesh sphere = mesh_of(icosphere(3, 0, 1));
+  const Deviation spheres = measure_deviation(sphere, scaled(sphere, 1.5));
+  CHECK(near(spheres.backward.maximum, 0.5, 0.01));
+  CHECK(near(spheres.forward.mean, 0.5, 0.02));
+
+  // A unit square against its half: the far edge is 0.5 away, the mean over the square 0.125, and the rms √(1/24).
+  const Mesh square = raw_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 3});
+  const Mesh half = raw_mesh({{0, 0, 0}, {0.5F, 0, 0}, {0.5F, 1, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 3});
+  const Deviation halved = measure_deviation(square, half);
+  CHECK(near(halved.forward.maximum, 0.5, 1e-6));
+  CHECK(near(halved.forward.mean, 0.125, 0.002));
+  CHECK(near(halved.forward.rms, std::sqrt(1.0 / 24), 0.002));
+  CHECK(halved.backward.maximum_bound < 1e-6);
+}
+
+TEST_CASE("a flat sheet costs few queries however its triangles lie") {
+  const Mesh fine = mesh_of(grid(40, 0, 1));
+  const Mesh coarse = mesh_of(grid(7, 0, 2));
+  DeviationOptions options;
+  options.budget = 2000;
+  const Deviation deviation = measure_maximum(fine, SurfaceIndex(fine), coarse, options);
+  CHECK(deviation.maximum_bound() <= allowed(0, options, bounding_box(fine).diagonal()) + 1e-7);
+}
+
+TEST_CASE("the maximum lies between its bounds on meshes of every sort") {
+  Random random(5);
+  DeviationOptions options;
+  options.sample_count = 100;
+  for (std::uint64_t seed = 0; seed < (kReduced ? 5 : 40); ++seed) {
+    INFO("seed " << seed);
+    const Mesh a = random_soup(seed, 1 + static_cast<int>(random.below(30)), 1);
+    const Mesh b = random_soup(seed + 1000, 1 + static_cast<int>(random.below(30)), 1);
+    const Deviation deviation = measure_deviation(a, b, options);
+    const double diagonal = std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
+    check_contains(deviation.forward, sample_supremum(a, b, 40));
+    check_contains(deviation.backward, sample_supremum(b, a, 40));
+    CHECK(deviation.forward.maximum_bound <= allowed(deviation.forward.maximum, options, diagonal));
+    CHECK(deviation.backward.maximum_bound <= allowed(deviation.backward.maximum, options, diagonal));
+
+    const Deviation both = measure_maximum(a, SurfaceIndex(a), b, options);
+    CHECK(overlap(both, deviation));
+    CHECK(both.maximum_bound() <= allowed(both.maximum(), options, diagonal));
+  }
+}
+
+TEST_CASE("the maximum lies between its bounds on levels of every shape") {
+  for (const NamedShape& shape : all_shapes()) {
+    const Mesh mesh = mesh_of(shape.soup);
+    if (mesh.face_count() == 0) continue;
+    const double diagonal = bounding_box(mesh).diagonal();
+    for (const double cell : {0.03, 0.1, 0.3}) {
+      INFO(shape.name << " in cells of " << cell);
+      const Mesh level = clustered(mesh, cell * diagonal);
+      if (level.face_count() == 0) continue;
+      DeviationOptions options;
+      options.sample_count = 100;
+      const Deviation deviation = measure_deviation(mesh, level, options);
+      check_contains(deviation.forward, sample_supremum(mesh, level, 6));
+      check_contains(deviation.backward, sample_supremum(level, mesh, 12));
+      CHECK(deviation.maximum_bound() <= allowed(deviation.maximum(), options, diagonal));
+    }
+  }
+}
+
+TEST_CASE("a spent budget gives an honest bound") {
+  const Mesh a = mesh_of(icosphere(2, 0.1, 3));
+  const Mesh b = mesh_of(icosphere(2, 0.1, 4));
+  const SampledSupremum forward = sample_supremum(a, b, 30);
+  for (const std::size_t budget : {0, 1, 10, 100}) {
+    DeviationOptions options;
+    options.sample_count = 10;
+    options.relative_tolerance = 1e-9;
+    options.budget = budget;
+    check_contains(measure_deviation(a, b, options).forward, forward);
+  }
+}
+
+TEST_CASE("enough is enough") {
+  const Mesh a = mesh_of(icosphere(3, 0.02, 3));
+  const Mesh b = mesh_of(icosphere(2, 0.02, 4));
+  const SurfaceIndex index(a);
+  const Deviation tight = measure_maximum(a, index, b, {});
+  const Deviation loose = measure_maximum(a, index, b, {}, 2 * tight.maximum());
+  CHECK(overlap(tight, loose));
+  CHECK(loose.maximum_bound() <= 2 * tight.maximum() * (1 + 1e-9));
+}
+
+TEST_CASE("the same meshes give the same numbers, and swapped ones the sides swapped") {
+  const Mesh a = mesh_of(torus(20, 12));
+  const Mesh b = clustered(a, 0.2);
+  DeviationOptions options;
+  options.sample_count = 5000;
+  const Deviation first = measure_deviation(a, b, options);
+  const Deviation again = measure_deviation(a, b, options);
+  const Deviation swapped = measure_deviation(b, a, options);
+  CHECK(first.forward.mean == again.forward.mean);
+  CHECK(first.forward.maximum_bound == again.forward.maximum_bound);
+  CHECK(first.mean_normal_angle == again.mean_normal_angle);
+  CHECK(first.forward.mean == swapped.backward.mean);
+  CHECK(first.backward.rms == swapped.forward.rms);
+  CHECK(first.backward.maximum == swapped.forward.maximum);
+}
+
+TEST_CASE("levels measured one after the other agree with each on its own") {
+  const std::vector<NamedShape> shapes = all_shapes();
+  for (const NamedShape& shape : shapes) {
+    const Mesh mesh = mesh_of(shape.soup);
+    if (mesh.face_count() == 0) continue;
+    const double diagonal = bounding_box(mesh).diagonal();
+    std::vector<Mesh> levels = {mesh, with_holes(mesh, 0.1, 1), with_holes(mesh, 0.1, 2)};
+    for (const double cell : {0.01, 0.02, 0.05, 0.06, 0.1, 0.2, 0.05}) levels.push_back(clustered(mesh, cell * diagonal));
+    levels.push_back(shifted(mesh, 0.1F, 0, 0));
+    levels.push_back(mesh);
+
+    DeviationOptions options;
+    options.relative_tolerance = 0.01;
+    LevelDeviation with_moves(mesh, options);
+    LevelDeviation without_moves(mesh, options);
+    const SurfaceIndex index(mesh);
+    const Mesh* last = nullptr;
+    for (const Mesh& level : levels) {
+      INFO(shape.name << ", level of " << level.face_count() << " faces");
+      double moved = kInfinity;
+      if (last && last->face_count() > 0) moved = measure_maximum(*last, SurfaceIndex(*last), level, options).forward.maximum_bound;
+      last = &level;
+      const Deviation alone = measure_maximum(mesh, index, level, options);
+      for (const Deviation& found : {with_moves.measure(level, moved), without_moves.measure(level)}) {
+        CHECK(overlap(found, alone));
+        if (level.face_count() > 0) CHECK(found.maximum_bound() <= allowed(found.maximum(), options, 1.1 * diagonal));
+      }
+    }
+  }
+}
+
+TEST_CASE("mean, rms and maximum agree with Metro") {
+  const auto table = model("metro/metro.tsv");
+  LODESTONE_SKIP_UNLESS(table, "no models: set LODESTONE_DATA to their folder");
+  std::ifstream file(*table);
+  std::string line;
+  std::getline(file, line);
+  int rows = 0;
+  while (std::getline(file, line)) {
+    std::istringstream fields(line);
+    std::string original, simplified;
+    OneSidedDeviation forward, backward;
+    fields >> original >> simplified >> forward.maximum >> forward.mean >> forward.rms >> backward.maximum >>
+        backward.mean >> backward.rms;
+    INFO(simplified);
+    const auto a = model(original), b = model("metro/" + simplified);
+    REQUIRE(fields);
+    REQUIRE(a);
+    REQUIRE(b);
+    const Deviation found = measure_deviation(read_mesh(*a).value().mesh, read_mesh(*b).value().mesh);
+    // Metro counts as many samples at vertices and on edges as in faces, so that finely meshed parts weigh more than
+    // their area. The cow's details do: its rms over the area is 14 % lower. The others are within 6 %.
+    const double tolerance = original == "mesh/cow.obj" ? 0.15 : 0.1;
+    const auto check_agrees = [&](const OneSidedDeviation& ours, const OneSidedDeviation& metros) {
+      CHECK(near(ours.mean, metros.mean, tolerance));
+      CHECK(near(ours.rms, metros.rms, tolerance));
+      CHECK(ours.maximum_bound >= metros.maximum * (1 - 1e-5));
+      CHECK(ours.maximum >= metros.maximum * 0.98);
+      CHECK(ours.maximum_bound <= ours.maximum * 1.0011);
+    };
+    check_agrees(found.forward, forward);
+    check_agrees(found.backward, backward);
+    ++rows;
+  }
+  CHECK(rows >= 4);
+}
+
+}  // namespace lodestone::test

@@ -1,0 +1,423 @@
+#include "support/shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "support/random.h"
+
+namespace lodestone::test {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+Index add_point(TriangleSoup& soup, double x, double y, double z) {
+  soup.positions.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+  return static_cast<Index>(soup.positions.size() - 1);
+}
+
+void add_triangle(TriangleSoup& soup, Index a, Index b, Index c) { soup.indices.insert(soup.indices.end(), {a, b, c}); }
+
+/// Adds the square a b c d, counter-clockwise, cut from a to c.
+void add_square(TriangleSoup& soup, Index a, Index b, Index c, Index d) {
+  add_triangle(soup, a, b, c);
+  add_triangle(soup, a, c, d);
+}
+
+/// Adds columns × rows squares over points that the caller numbers: `point(i, j)`, i along columns, j along rows.
+template <class Point>
+void add_squares(TriangleSoup& soup, int columns, int rows, Point point) {
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      add_square(soup, point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1));
+    }
+  }
+}
+
+/// Makes a sheet of columns × rows squares; `position(i, j)` returns an array of x, y, z.
+template <class Position>
+TriangleSoup sheet(int columns, int rows, Position position) {
+  TriangleSoup soup;
+  for (int j = 0; j <= rows; ++j) {
+    for (int i = 0; i <= columns; ++i) {
+      const std::array<double, 3> p = position(i, j);
+      add_point(soup, p[0], p[1], p[2]);
+    }
+  }
+  add_squares(soup, columns, rows, [&](int i, int j) { return static_cast<Index>(j * (columns + 1) + i); });
+  return soup;
+}
+
+Attribute float_attribute(const char* name, int component_count, std::span<const float> values) {
+  Attribute attribute;
+  attribute.name = name;
+  attribute.component_count = static_cast<std::uint8_t>(component_count);
+  attribute.data.resize(values.size_bytes());
+  std::memcpy(attribute.data.data(), values.data(), values.size_bytes());
+  return attribute;
+}
+
+/// A point of a cube's side: (u, v) on the side, w along its normal. Equal points of two sides get equal coordinates.
+std::array<double, 3> cube_point(int side, double u, double v) {
+  const double w = side % 2 == 0 ? 1 : 0;
+  // On odd sides u and v change places, so that both of an axis' sides wind outwards.
+  if (side % 2 == 1) std::swap(u, v);
+  const int axis = side / 2;
+  std::array<double, 3> p{};
+  p[axis] = w;
+  p[(axis + 1) % 3] = u;
+  p[(axis + 2) % 3] = v;
+  return p;
+}
+
+void add_cube_side(TriangleSoup& soup, int side, int n) {
+  const auto first = static_cast<Index>(soup.positions.size());
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= n; ++i) {
+      const auto p = cube_point(side, double(i) / n, double(j) / n);
+      add_point(soup, p[0], p[1], p[2]);
+    }
+  }
+  add_squares(soup, n, n, [&](int i, int j) { return first + static_cast<Index>(j * (n + 1) + i); });
+}
+
+/// Splits each triangle into four, with new points on the unit sphere.
+void subdivide_sphere(TriangleSoup& soup) {
+  std::map<std::pair<Index, Index>, Index> midpoints;
+  const auto midpoint = [&](Index a, Index b) {
+    const auto key = std::minmax(a, b);
+    if (const auto found = midpoints.find(key); found != midpoints.end()) return found->second;
+    const Vec3 m = normalized(Vec3(soup.positions[a]) + Vec3(soup.positions[b]));
+    return midpoints[key] = add_point(soup, m.x, m.y, m.z);
+  };
+  const std::vector<Index> old = std::exchange(soup.indices, {});
+  for (std::size_t t = 0; t < old.size(); t += 3) {
+    const Index a = old[t], b = old[t + 1], c = old[t + 2];
+    const Index ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
+    add_triangle(soup, a, ab, ca);
+    add_triangle(soup, b, bc, ab);
+    add_triangle(soup, c, ca, bc);
+    add_triangle(soup, ab, bc, ca);
+  }
+}
+
+TriangleSoup icosahedron() {
+  TriangleSoup soup;
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  for (const auto& p : {std::array{-1.0, g, 0.0},
+                        {1.0, g, 0.0},
+                        {-1.0, -g, 0.0},
+                        {1.0, -g, 0.0},
+                        {0.0, -1.0, g},
+                        {0.0, 1.0, g},
+                        {0.0, -1.0, -g},
+                        {0.0, 1.0, -g},
+                        {g, 0.0, -1.0},
+                        {g, 0.0, 1.0},
+                        {-g, 0.0, -1.0},
+                        {-g, 0.0, 1.0}}) {
+    const Vec3 n = normalized({p[0], p[1], p[2]});
+    add_point(soup, n.x, n.y, n.z);
+  }
+  soup.indices = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4,  11, 10, 2,  10, 7, 6, 7, 1, 8,
+                  3, 9,  4, 3, 4, 2, 3, 2, 6, 3, 6, 8,  3, 8,  9,  4, 9, 5, 2, 4,  11, 6,  2,  10, 8,  6, 7, 9, 8, 1};
+  return soup;
+}
+
+void append(TriangleSoup& soup, const TriangleSoup& other, const Vec3& shift) {
+  const auto first = static_cast<Index>(soup.positions.size());
+  for (const Vec3f& p : other.positions) add_point(soup, p.x + shift.x, p.y + shift.y, p.z + shift.z);
+  for (const Index i : other.indices) soup.indices.push_back(first + i);
+}
+
+/// Adds one triangle for each step of a circle of n points that starts at `ring`, to the point `apex`.
+void add_fan(TriangleSoup& soup, Index apex, Index ring, int n, bool upwards) {
+  for (int i = 0; i < n; ++i) {
+    const Index a = ring + static_cast<Index>(i);
+    const Index b = ring + static_cast<Index>((i + 1) % n);
+    upwards ? add_triangle(soup, apex, a, b) : add_triangle(soup, apex, b, a);
+  }
+}
+
+Index add_circle(TriangleSoup& soup, int n) {
+  const auto first = static_cast<Index>(soup.positions.size());
+  for (int i = 0; i < n; ++i) add_point(soup, std::cos(kTurn * i / n), std::sin(kTurn * i / n), 0);
+  return first;
+}
+
+}  // namespace
+
+TriangleSoup empty_soup() { return {}; }
+
+TriangleSoup single_triangle() {
+  TriangleSoup soup;
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  soup.indices = {0, 1, 2};
+  return soup;
+}
+
+TriangleSoup grid(int n, double noise, std::uint64_t seed) {
+  Random random(seed);
+  return sheet(n, n, [&](int i, int j) {
+    return std::array{double(i) / n, double(j) / n, noise * random.signed_unit()};
+  });
+}
+
+TriangleSoup terrain(int n, std::uint64_t seed) {
+  Random random(seed);
+  std::array<std::array<double, 2>, 4> phases{};
+  for (auto& phase : phases) phase = {kTurn * random.unit(), kTurn * random.unit()};
+  return sheet(n, n, [&](int i, int j) {
+    const double x = double(i) / n, y = double(j) / n;
+    double height = 0;
+    double scale = 1;
+    for (const auto& [phase_x, phase_y] : phases) {
+      height += 0.1 / scale * std::sin(3 * scale * x + phase_x) * std::cos(4 * scale * y + phase_y);
+      scale *= 2.3;
+    }
+    return std::array{x, y, height};
+  });
+}
+
+TriangleSoup annulus(int m, int n) {
+  TriangleSoup soup;
+  for (int j = 0; j <= n; ++j) {
+    const double radius = 1 - 0.5 * j / n;
+    for (int i = 0; i < m; ++i) add_point(soup, radius * std::cos(kTurn * i / m), radius * std::sin(kTurn * i / m), 0);
+  }
+  add_squares(soup, m, n, [&](int i, int j) { return static_cast<Index>(j * m + i % m); });
+  return soup;
+}
+
+TriangleSoup cylinder(int m, int n) {
+  TriangleSoup soup;
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i < m; ++i) add_point(soup, std::cos(kTurn * i / m), std::sin(kTurn * i / m), 2.0 * j / n);
+  }
+  add_squares(soup, m, n, [&](int i, int j) { return static_cast<Index>(j * m + i % m); });
+  return soup;
+}
+
+TriangleSoup fan(int n, double height) {
+  TriangleSoup soup;
+  const Index apex = add_point(soup, 0, 0, height);
+  add_fan(soup, apex, add_circle(soup, n), n, true);
+  return soup;
+}
+
+TriangleSoup tetrahedron() {
+  TriangleSoup soup;
+  soup.positions = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  soup.indices = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+  return soup;
+}
+
+TriangleSoup cube(int n) {
+  TriangleSoup soup;
+  for (int side = 0; side < 6; ++side) add_cube_side(soup, side, n);
+  return soup;
+}
+
+TriangleSoup icosphere(int subdivisions, double noise, std::uint64_t seed) {
+  TriangleSoup soup = icosahedron();
+  for (int i = 0; i < subdivisions; ++i) subdivide_sphere(soup);
+  Random random(seed);
+  for (Vec3f& p : soup.positions) {
+    const Vec3 moved = Vec3(p) * (1 + noise * random.signed_unit());
+    p = {static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z)};
+  }
+  return soup;
+}
+
+TriangleSoup torus(int m, int n) {
+  TriangleSoup soup;
+  for (int j = 0; j < n; ++j) {
+    const double radius = 1 + 0.4 * std::cos(kTurn * j / n);
+    const double z = 0.4 * std::sin(kTurn * j / n);
+    for (int i = 0; i < m; ++i) add_point(soup, radius * std::cos(kTurn * i / m), radius * std::sin(kTurn * i / m), z);
+  }
+  add_squares(soup, m, n, [&](int i, int j) { return static_cast<Index>(j % n * m + i % m); });
+  return soup;
+}
+
+TriangleSoup double_cone(int n) {
+  TriangleSoup soup;
+  const Index top = add_point(soup, 0, 0, 1);
+  const Index bottom = add_point(soup, 0, 0, -1);
+  const Index ring = add_circle(soup, n);
+  add_fan(soup, top, ring, n, true);
+  add_fan(soup, bottom, ring, n, false);
+  return soup;
+}
+
+TriangleSoup many_components(int count) {
+  TriangleSoup soup;
+  for (int i = 0; i < count; ++i) {
+    append(soup, icosphere(i % 2, 0.1, static_cast<std::uint64_t>(i)), {3.0 * (i % 8), 3.0 * (i / 8), 0});
+  }
+  return soup;
+}
+
+TriangleSoup seam_cube(int n) {
+  TriangleSoup soup = cube(n);
+  std::vector<float> normals;
+  std::vector<float> uvs;
+  for (int side = 0; side < 6; ++side) {
+    std::array<float, 3> normal{};
+    normal[static_cast<std::size_t>(side / 2)] = side % 2 == 0 ? 1.f : -1.f;
+    for (int j = 0; j <= n; ++j) {
+      for (int i = 0; i <= n; ++i) {
+        normals.insert(normals.end(), normal.begin(), normal.end());
+        uvs.insert(uvs.end(), {float(i) / float(n), float(j) / float(n)});
+      }
+    }
+  }
+  soup.attributes = {float_attribute("NORMAL", 3, normals), float_attribute("TEXCOORD_0", 2, uvs)};
+  return soup;
+}
+
+TriangleSoup seam_sphere(int m, int n) {
+  TriangleSoup soup;
+  std::vector<float> normals;
+  std::vector<float> uvs;
+  for (int j = 0; j <= n; ++j) {
+    const bool pole = j == 0 || j == n;
+    const double radius = std::sin(kTurn / 2 * j / n);
+    const double z = -std::cos(kTurn / 2 * j / n);
+    for (int i = 0; i <= m; ++i) {
+      if ((j == 0 && i == m) || (j == n && i == 0)) continue;  // no triangle uses these
+      // i % m: the first and the last column are one line of vertices. No −0 at the poles, for the same reason.
+      const double angle = kTurn * (i % m) / m;
+      add_point(soup, pole ? 0 : radius * std::cos(angle), pole ? 0 : radius * std::sin(angle), z);
+      const Vec3f& p = soup.positions.back();
+      normals.insert(normals.end(), {p.x, p.y, p.z});
+      uvs.insert(uvs.end(), {float(i) / float(m), float(j) / float(n)});
+    }
+  }
+  const auto point = [&](int i, int j) { return static_cast<Index>(j * (m + 1) + i - (j > 0) - (j == n)); };
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < m; ++i) {
+      if (j > 0) add_triangle(soup, point(i, j), point(i + 1, j), point(i + 1, j + 1));
+      if (j + 1 < n) add_triangle(soup, point(i, j), point(i + 1, j + 1), point(i, j + 1));
+    }
+  }
+  soup.attributes = {float_attribute("NORMAL", 3, normals), float_attribute("TEXCOORD_0", 2, uvs)};
+  return soup;
+}
+
+TriangleSoup two_material_grid(int n) {
+  TriangleSoup soup = grid(n, 0.01, 11);
+  for (std::size_t t = 0; t < soup.indices.size(); t += 3) {
+    // The first point of either triangle of a square lies on the square's left edge.
+    soup.face_material.push_back(soup.indices[t] % static_cast<Index>(n + 1) * 2 >= static_cast<Index>(n) ? 1 : 0);
+  }
+  return soup;
+}
+
+TriangleSoup two_material_sphere(int subdivisions) {
+  TriangleSoup soup = icosphere(subdivisions, 0, 0);
+  for (std::size_t t = 0; t < soup.indices.size(); t += 3) {
+    double z = 0;
+    for (std::size_t k = 0; k < 3; ++k) z += soup.positions[soup.indices[t + k]].z;
+    soup.face_material.push_back(z < 0 ? 1 : 0);
+  }
+  return soup;
+}
+
+TriangleSoup mobius_strip(int m, int n) {
+  TriangleSoup soup;
+  for (int i = 0; i < m; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      const double across = (2.0 * j / n - 1) * 0.3;
+      const double radius = 1 + across * std::cos(kTurn / 2 * i / m);
+      add_point(soup, radius * std::cos(kTurn * i / m), radius * std::sin(kTurn * i / m),
+                across * std::sin(kTurn / 2 * i / m));
+    }
+  }
+  // Past the end the band meets its start upside down.
+  add_squares(soup, m, n, [&](int i, int j) { return static_cast<Index>(i < m ? i * (n + 1) + j : n - j); });
+  return soup;
+}
+
+TriangleSoup bow_tie() {
+  TriangleSoup soup = fan(6, 0.5);
+  const TriangleSoup other = fan(5, -0.5);
+  append(soup, other, {0, 0, 1});  // both apexes at (0, 0, 0.5)
+  return soup;
+}
+
+TriangleSoup three_at_one_edge() {
+  TriangleSoup soup;
+  soup.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}};
+  soup.indices = {0, 1, 2, 1, 0, 3, 0, 1, 4};
+  return soup;
+}
+
+TriangleSoup disagreeing_pair() {
+  TriangleSoup soup;
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  soup.indices = {0, 1, 2, 0, 3, 2};
+  return soup;
+}
+
+TriangleSoup dirty_grid(int n) {
+  TriangleSoup soup = grid(n, 0, 0);
+  const Index infinite = add_point(soup, std::numeric_limits<double>::infinity(), 0, 0);
+  const Index nan = add_point(soup, 0, std::numeric_limits<double>::quiet_NaN(), 0);
+  const Index copy_of_first = add_point(soup, 0, 0, 0);
+  add_point(soup, 7, 7, 7);  // unused
+  add_triangle(soup, 0, 1, infinite);
+  add_triangle(soup, nan, 1, 0);
+  add_triangle(soup, 0, 1, 1);
+  add_triangle(soup, 0, copy_of_first, 1);
+  add_triangle(soup, soup.indices[1], soup.indices[2], soup.indices[0]);
+  return soup;
+}
+
+std::vector<NamedShape> all_shapes() {
+  return {
+      {"empty", empty_soup(), true, 0},
+      {"single triangle", single_triangle(), true, 1},
+      {"tetrahedron", tetrahedron(), true, 2},
+      {"cube 1", cube(1), true, 2},
+      {"cube 4", cube(4), true, 2},
+      {"flat grid 6", grid(6, 0, 1), true, 1},
+      {"noisy grid 10", grid(10, 0.05, 2), true, 1},
+      {"terrain 16", terrain(16, 3), true, 1},
+      {"icosahedron", icosphere(0, 0, 0), true, 2},
+      {"icosphere 2", icosphere(2, 0, 0), true, 2},
+      {"noisy icosphere 3", icosphere(3, 0.05, 4), true, 2},
+      {"torus 16 x 8", torus(16, 8), true, 0},
+      {"thin torus 3 x 3", torus(3, 3), true, 0},
+      {"annulus 12 x 3", annulus(12, 3), true, 0},
+      {"cylinder 10 x 4", cylinder(10, 4), true, 0},
+      {"narrow cylinder 3 x 6", cylinder(3, 6), true, 0},
+      {"flat fan 40", fan(40, 0), true, 1},
+      {"cone 100", fan(100, 1), true, 1},
+      {"double cone 64", double_cone(64), true, 2},
+      {"12 components", many_components(12), true, 24},
+      {"seam cube 3", seam_cube(3), true, 2},
+      {"seam sphere 12 x 8", seam_sphere(12, 8), true, 2},
+      {"two-material grid 8", two_material_grid(8), true, 1},
+      {"two-material sphere 2", two_material_sphere(2), true, 2},
+      {"moebius strip 14 x 2", mobius_strip(14, 2), false, std::nullopt},
+      {"bow-tie", bow_tie(), false, std::nullopt},
+      {"three at one edge", three_at_one_edge(), false, std::nullopt},
+      {"disagreeing pair", disagreeing_pair(), false, std::nullopt},
+      {"dirty grid 4", dirty_grid(4), false, std::nullopt},
+  };
+}
+
+std::vector<NamedShape> manifold_shapes() {
+  std::vector<NamedShape> shapes = all_shapes();
+  std::erase_if(shapes, [](const NamedShape& shape) { return !shape.manifold; });
+  return shapes;
+}
+
+}  // namespace lodestone::test

@@ -1,0 +1,54 @@
+// Headless Chromium from the system, drawing in software, with no connection to the outside.
+import { accessSync, constants } from 'node:fs';
+import { delimiter, join } from 'node:path';
+import { chromium } from 'playwright-core';
+
+const NAMES = ['chromium', 'chromium-browser', 'google-chrome'];
+
+const ARGUMENTS = [
+  '--use-gl=angle',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+  '--no-first-run',
+];
+
+function isExecutable(path) {
+  try {
+    accessSync(path, constants.X_OK);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** Returns the path of the machine's Chromium, or undefined. */
+export function findBrowser() {
+  const folders = (process.env.PATH ?? '').split(delimiter);
+  return NAMES.flatMap((name) => folders.map((folder) => join(folder, name))).find(isExecutable);
+}
+
+export async function launchBrowser(executablePath) {
+  // Chromium's sandbox refuses to run as root; the pages are ours.
+  const asRoot = process.getuid?.() === 0;
+  return chromium.launch({ executablePath, args: [...ARGUMENTS, ...(asRoot ? ['--no-sandbox'] : [])] });
+}
+
+/** Opens a page, hands it to `job`, and fails on any error the page reports. */
+export async function withPage(browser, url, job) {
+  const page = await browser.newPage({ viewport: { width: 640, height: 640 } });
+  page.setDefaultTimeout(120_000); // a busy machine draws slowly in software
+  const problems = [];
+  page.on('pageerror', (error) => problems.push(error.message));
+  page.on('console', (message) => message.type() === 'error' && problems.push(message.text()));
+  try {
+    await page.goto(url);
+    const result = await job(page);
+    if (problems.length > 0) throw new Error(`the page reports: ${problems.join('; ')}`);
+    return result;
+  } finally {
+    await page.close();
+  }
+}

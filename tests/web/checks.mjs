@@ -1,0 +1,80 @@
+// What must be true of a multi-LOD .glb in each client. Every check throws with the reason, or returns a line for the log.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { join } from 'node:path';
+import validator from 'gltf-validator';
+import { withPage } from './browser.mjs';
+
+const triangles = (levels) => levels.map((level) => level.triangles);
+
+/** Khronos' validator: no error and no warning. It does not look inside Draco; the clients do. */
+export async function validates(asset) {
+  const report = await validator.validateBytes(new Uint8Array(await readFile(asset.path)), { maxIssues: 100 });
+  const { numErrors, numWarnings, numInfos, messages } = report.issues;
+  const serious = messages.filter((message) => message.severity < 2);
+  const text = serious.map(({ code, message, pointer }) => `${code} ${pointer}: ${message}`).join('\n');
+  assert.equal(numErrors + numWarnings, 0, text);
+  return `${numInfos} infos`;
+}
+
+/** The extras tell the truth: each level's face count is what its accessors hold. */
+export async function extrasAgree(asset) {
+  for (const { extras, triangles: held } of asset.levels) assert.equal(extras.faces, held);
+  return triangles(asset.levels).join(' ');
+}
+
+async function openThree(site, asset, job) {
+  return withPage(site.browser, `${site.address}/pages/three.html`, async (page) => {
+    await page.waitForFunction('window.ready');
+    const nodes = asset.levels.map((level) => level.node);
+    const loaded = await page.evaluate(([url, ids, draco]) => window.loadLevels(url, ids, draco),
+      [asset.url, nodes, asset.draco]);
+    return job(page, loaded);
+  });
+}
+
+/** three.js shows the finest level by default and loads every other; without Draco it has no decoder at hand. */
+export async function opensInThree(site, asset) {
+  return openThree(site, asset, async (page, loaded) => {
+    assert.deepEqual(loaded.levels, triangles(asset.levels));
+    assert.equal(loaded.scene, asset.levels[0].triangles);
+    return loaded.levels.join(' ');
+  });
+}
+
+/** Pictures of the levels, for a person to look at. */
+export async function takesPictures(site, asset) {
+  return openThree(site, asset, async (page) => {
+    for (let level = 0; level < asset.levels.length; ++level) {
+      await page.evaluate((number) => window.drawLevel(number), level);
+      await page.locator('canvas').screenshot({ path: join(site.output, `${asset.name}-level-${level}.png`) });
+    }
+    return `${asset.name}-level-*.png`;
+  });
+}
+
+async function openBabylon(site, url, useRangeRequests) {
+  return withPage(site.browser, `${site.address}/pages/babylon.html`, async (page) => {
+    await page.waitForFunction('window.ready');
+    return page.evaluate(([file, ranges]) => window.loadProgressively(file, ranges), [url, useRangeRequests]);
+  });
+}
+
+/** Babylon.js loads every level and ends with the finest. With the whole file at hand, levels may pass before it tells. */
+export async function opensInBabylon(site, asset) {
+  const { shown, last } = await openBabylon(site, asset.url, false);
+  assert.equal(shown.length, asset.levels.length);
+  assert.equal(last, asset.levels[0].triangles);
+  return `${last} after ${shown.length} levels`;
+}
+
+/** Read by byte ranges it shows level after level, coarsest first, and reads the file from front to back, no byte twice. */
+export async function opensInBabylonByRanges(site, asset) {
+  site.ranges.length = 0;
+  const { shown } = await openBabylon(site, asset.url, true);
+  assert.deepEqual(shown, triangles(asset.levels).reverse());
+  const requests = site.ranges.filter((range) => range.path === asset.path);
+  assert.ok(requests.length > asset.levels.length, `only ${requests.length} requests`);
+  for (let i = 1; i < requests.length; ++i) assert.ok(requests[i].first > requests[i - 1].last, 'ranges overlap');
+  return `${shown.join(' ')}; ${requests.map(({ first, last }) => last - first + 1).join(' + ')} bytes`;
+}

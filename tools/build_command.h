@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <lodestone/core/result.h>
+
+#include "command.h"
+#include "target_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lodestone::tool {
+
+/// `lodestone build`: a mesh file in, a progressive multi-LOD .glb out.
+struct BuildCommand {
+  std::filesystem::path input;
+  std::filesystem::path output;
+  std::optional<std::filesystem::path> report;
+  std::string metric = "hybrid";
+  std::string normalisation = "integral";
+  std::string reference = "original";
+  std::optional<int> level_count;  ///< with --ratio only, the whole mesh included; 5 if not given
+  TargetOptions targets;
+  bool no_stream = false;
+  bool no_draco = false;
+  int position_bits = 14;
+  bool quiet = false;
+  bool strict = false;
+
+  void add_to(CLI::App& app);
+  /// Errors: any; nothing is written then.
+  Result<Outcome> run() const;
+
+ private:
+  void add_level_options(CLI::App& app);
+  void add_metric_options(CLI::App& app);
+  void add_format_options(CLI::App& app);
+};
+
+}  // namespace lodestone::tool

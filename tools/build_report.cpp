@@ -1,0 +1,100 @@
+#include "build_report.h"
+
+#include <cstdio>
+
+#include "process_memory.h"
+#include "text_table.h"
+
+namespace lodestone::tool {
+namespace {
+
+/// Raised by one whenever a member changes its meaning or goes away; new members do not raise it.
+constexpr int kReportSchemaVersion = 1;
+
+Json input_json(const BuildReport::Input& input) {
+  return {{"path", input.path},
+          {"faces", input.face_count},
+          {"vertices", input.vertex_count},
+          {"bounding_box", box_json(input.box)},
+          {"assembly", assembly_json(input.assembly)},
+          {"notes", input.notes}};
+}
+
+Json target_json(const std::optional<LevelTarget>& target) {
+  if (!target) return nullptr;
+  if (target->kind == TargetKind::Faces) return {{"faces", static_cast<std::uint64_t>(target->value)}};
+  return {{std::string(name_of(target->kind)), target->value}};
+}
+
+Json level_json(const BuildReport::Level& level) {
+  return {{"faces", level.face_count},
+          {"vertices", level.vertex_count},
+          {"deviation", deviation_json(level.deviation)},
+          {"deviation_bound", level.deviation_bound},
+          {"curvature_error", level.curvature_error},
+          {"bytes", level.bytes},
+          {"target", target_json(level.target)},
+          {"target_met", level.met},
+          {"stopped_by", level.stopped_by}};
+}
+
+Json stream_json(const BuildReport::Stream& stream) {
+  return {{"bytes", stream.bytes},
+          {"records", stream.record_count},
+          {"rounds", stream.round_count},
+          {"base_faces", stream.base_face_count},
+          {"stopped_by", name_of(stream.stop_reason)},
+          {"blocked",
+           {{"locked", stream.blocked.locked},
+            {"flip", stream.blocked.flip},
+            {"link", stream.blocked.link},
+            {"ring", stream.blocked.ring}}}};
+}
+
+Json timings_json(const BuildReport::Timings& timings) {
+  return {{"read", timings.read}, {"simplify", timings.simplify}, {"levels", timings.levels}, {"write", timings.write}};
+}
+
+std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& level, double diagonal) {
+  return {std::to_string(number),
+          std::to_string(level.face_count),
+          std::to_string(level.vertex_count),
+          percent_text(level.deviation.maximum(), diagonal),
+          percent_text(level.deviation.forward.mean, diagonal),
+          std::to_string(level.bytes),
+          level.stopped_by};
+}
+
+}  // namespace
+
+Json report_json(const BuildReport& report) {
+  Json levels = Json::array();
+  for (const BuildReport::Level& level : report.levels) levels.push_back(level_json(level));
+  return {{"schema_version", kReportSchemaVersion},
+          {"tool", {{"name", "lodestone"}, {"version", LODESTONE_VERSION}}},
+          {"input", input_json(report.input)},
+          {"settings", report.settings},
+          {"levels", levels},
+          {"stream", stream_json(report.stream)},
+          {"output",
+           {{"path", report.output_path},
+            {"bytes", report.output_bytes},
+            {"quantisation_error", report.quantisation_error}}},
+          {"timings_ms", timings_json(report.timings_ms)},
+          {"peak_memory_bytes", peak_memory_bytes()}};
+}
+
+void print_table(const BuildReport& report) {
+  TextTable table({"level", "faces", "vertices", "max", "mean", "bytes", "stopped by"});
+  const double diagonal = report.input.box.diagonal();
+  for (std::size_t i = 0; i < report.levels.size(); ++i) table.add(row_of(i, report.levels[i], diagonal));
+  table.print();
+  if (report.stream.bytes > 0) {
+    std::printf("stream: %zu records in %zu rounds over a base of %zu faces, %llu bytes\n", report.stream.record_count,
+                report.stream.round_count, report.stream.base_face_count,
+                static_cast<unsigned long long>(report.stream.bytes));
+  }
+  std::printf("%s: %llu bytes\n", report.output_path.c_str(), static_cast<unsigned long long>(report.output_bytes));
+}
+
+}  // namespace lodestone::tool

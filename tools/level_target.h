@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include <lodestone/lod/progressive_mesh.h>
+#include <lodestone/lod/simplify.h>
+
+namespace lodestone::tool {
+
+enum class TargetKind {
+  Faces,    ///< at most so many faces
+  Error,    ///< at most so much deviation
+  Epsilon,  ///< at most so much curvature error
+};
+
+/// What a level has to keep to.
+struct LevelTarget {
+  TargetKind kind = TargetKind::Faces;
+  double value = 0;       ///< faces, mesh units, or the metric's own unit; a share of the whole if relative
+  bool relative = false;  ///< to the full face count (Faces) or to the bounding-box diagonal (Error)
+};
+
+/// What relative targets are relative to.
+struct FullSize {
+  std::size_t face_count = 0;
+  double diagonal = 0;
+};
+
+/// The level of a progressive mesh that answers a target.
+struct LevelChoice {
+  LevelTarget target;
+  Index position = 0;
+  bool met = true;
+  std::string stopped_by;  ///< why the level is no coarser: faces, error, epsilon; or stuck
+};
+
+/// Returns the target in absolute numbers; a share of the faces is rounded down.
+LevelTarget resolve(const LevelTarget& target, const FullSize& full);
+
+/// Finds the level that answers an absolute target; an error of 0 is the whole mesh.
+/// `end` says why the stream goes no further down than its base mesh.
+LevelChoice choose_level(const ProgressiveMesh& mesh, const LevelTarget& target, StopReason end);
+
+/// Returns the word reports use: faces, error, epsilon, stuck or cancelled.
+std::string_view name_of(StopReason reason);
+/// Returns the word reports and options use: faces, error or epsilon.
+std::string_view name_of(TargetKind kind);
+
+}  // namespace lodestone::tool

@@ -1,0 +1,145 @@
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "build_command.h"
+#include "command.h"
+#include "compare_command.h"
+#include "extract_command.h"
+#include "inspect_command.h"
+#include "messages.h"
+
+namespace lodestone::tool {
+namespace {
+
+/// Part of the program's interface: scripts branch on these.
+enum ExitCode : int {
+  kDone = 0,
+  kUsage = 1,
+  kInputUnreadable = 2,
+  kUnsupported = 3,
+  kNotWritten = 4,
+  kTargetNotMet = 5,
+};
+
+int exit_code(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::InvalidArgument:
+      return kUsage;
+    case ErrorCode::Unreadable:
+    case ErrorCode::Malformed:
+    case ErrorCode::LimitExceeded:
+      return kInputUnreadable;
+    case ErrorCode::Unsupported:
+      return kUnsupported;
+    case ErrorCode::NotWritten:
+      return kNotWritten;
+  }
+  return kUsage;
+}
+
+int exit_code(const Result<Outcome>& result) {
+  if (result) return *result == Outcome::Done ? kDone : kTargetNotMet;
+  const Error& error = result.error();
+  const std::string where = error.byte_offset ? " (at byte " + std::to_string(*error.byte_offset) + ")" : "";
+  print_error(error.message + where);
+  return exit_code(error.code);
+}
+
+/// The commands and what runs each of them.
+class Program {
+ public:
+  Program() {
+    app_.set_version_flag("--version", "lodestone " LODESTONE_VERSION);
+    app_.footer(
+        "Exit codes: 0 done, 1 usage, 2 input unreadable, 3 unsupported, 4 output not written,\n"
+        "5 target not met (with --strict)\n\n"
+        "Example:\n"
+        "  lodestone build bunny.obj -o bunny.glb\n"
+        "  lodestone extract bunny.glb --error 0.1% -o bunny-near.glb");
+    add("build", "Turn a mesh file into a progressive multi-LOD .glb", build_);
+    add("extract", "Take one level out of a .glb's removal stream", extract_);
+    add("inspect", "Show the levels, faces, errors and bytes of a file", inspect_);
+    add("compare", "Measure how far apart two surfaces are", compare_);
+  }
+
+  int run(int argument_count, const char* const* arguments);
+
+ private:
+  template <class Command>
+  void add(const char* name, const char* description, Command& command) {
+    CLI::App* app = app_.add_subcommand(name, description);
+    command.add_to(*app);
+    commands_.emplace_back(app, [&command] { return command.run(); });
+  }
+
+  void print_usage_error(std::string message) const;
+  int run_command() const;
+
+  CLI::App app_{"Progressive, multi-LOD assets from triangle meshes", "lodestone"};
+  BuildCommand build_;
+  ExtractCommand extract_;
+  InspectCommand inspect_;
+  CompareCommand compare_;
+  std::vector<std::pair<CLI::App*, std::function<Result<Outcome>()>>> commands_;
+};
+
+int Program::run(int argument_count, const char* const* arguments) {
+  try {
+    app_.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    // Help and version are thrown too, with the code 0; only real errors are ours to word.
+    if (error.get_exit_code() == 0) return app_.exit(error);
+    print_usage_error(error.what());
+    return kUsage;
+  }
+  return run_command();
+}
+
+void Program::print_usage_error(std::string message) const {
+  message.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(message.front())));
+  std::string help = "lodestone";
+  for (const CLI::App* app : app_.get_subcommands()) help += " " + app->get_name();
+  print_error(message + "; see " + help + " --help");
+}
+
+int Program::run_command() const {
+  for (const auto& [app, run] : commands_) {
+    if (app->parsed()) return exit_code(run());
+  }
+  print_usage_error("no command given");
+  return kUsage;
+}
+
+/// Standard output is buffered: a full disk shows only now.
+int finish_output(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  print_error(std::string("standard output: ") + std::strerror(errno));
+  return code == kDone ? kNotWritten : code;
+}
+
+int guarded_main(int argument_count, const char* const* arguments) {
+  try {
+    Program program;
+    return finish_output(program.run(argument_count, arguments));
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory");
+  } catch (const std::exception& error) {
+    print_error(std::string("internal error: ") + error.what());
+  }
+  return kInputUnreadable;
+}
+
+}  // namespace
+}  // namespace lodestone::tool
+
+int main(int argc, char** argv) { return lodestone::tool::guarded_main(argc, argv); }

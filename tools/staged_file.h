@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+#include <lodestone/core/result.h>
+
+namespace lodestone::tool {
+
+/// A file that is written in full beside its destination and takes its place only on `commit`.
+///
+/// Commands with several outputs stage all of them and commit at the end: a failure before that leaves every
+/// destination as it was. A device or pipe cannot be replaced by a file: it is written directly, on `write`.
+class StagedFile {
+ public:
+  explicit StagedFile(std::filesystem::path destination);
+  /// Removes what was staged and not committed.
+  ~StagedFile();
+  StagedFile(const StagedFile&) = delete;
+  StagedFile& operator=(const StagedFile&) = delete;
+
+  /// Errors: NotWritten.
+  Result<void> write(std::span<const std::byte> bytes);
+  /// Moves the staged file to its destination. Errors: NotWritten.
+  Result<void> commit();
+
+ private:
+  std::filesystem::path destination_;
+  std::filesystem::path staged_;
+};
+
+/// Checks, before the long work starts, that a file can be put at `path`.
+/// Errors: NotWritten where its folder does not exist, or where it is a folder itself.
+Result<void> check_destination(const std::filesystem::path& path);
+
+}  // namespace lodestone::tool

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <chrono>
+
+namespace lodestone::tool {
+
+/// Wall-clock time, lap by lap.
+class Stopwatch {
+ public:
+  /// Returns the milliseconds since the last lap, or since construction.
+  double lap_ms() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double, std::milli> lap = now - last_;
+    last_ = now;
+    return lap.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace lodestone::tool
