@@ -54,80 +54,6 @@ void append_smallest_block(std::vector<std::byte>& out, std::span<const std::byt
     append_block(out, BlockMode::Stored, bytes.size(), bytes);
 }
 
-/// Takes blocks off the front of a chunk.
-class BlockReader {
- public:
-  BlockReader(std::span<const std::byte> bytes, std::uint64_t budget) : bytes_(bytes), budget_(budget) {}
-
-  Result<std::vector<std::byte>> next() {
-    if (at_ == bytes_.size()) return broken("ends before its last block");
-    const auto mode = static_cast<std::uint8_t>(bytes_[at_++]);
-    LODESTONE_TRY(const std::uint64_t decoded, varint());
-    if (decoded > budget_) return broken(text("block of ", decoded, " bytes where ", budget_, " are left"));
-    budget_ -= decoded;
-    switch (static_cast<BlockMode>(mode)) {
-      case BlockMode::Stored: return stored(decoded);
-      case BlockMode::Run: return run(decoded);
-      case BlockMode::Zstd: return compressed(decoded);
-    }
-    return broken(text("unknown block mode ", int{mode}));
-  }
-
-  /// What remains after the last block is padding.
-  Result<void> finish() const {
-    if (budget_ != 0) return broken(text(budget_, " bytes are missing"));
-    const auto rest = bytes_.subspan(at_);
-    if (std::any_of(rest.begin(), rest.end(), [](std::byte b) { return b != std::byte{0}; }))
-      return broken("bytes follow its last block");
-    return {};
-  }
-
- private:
-  tl::unexpected<Error> broken(const std::string& message) const { return fail(ErrorCode::Malformed, message, at_); }
-
-  Result<std::uint64_t> varint() {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < kMaxVarintBytes && at_ < bytes_.size(); ++i) {
-      const auto digit = static_cast<std::uint8_t>(bytes_[at_++]);
-      value |= std::uint64_t{digit & 0x7fu} << (7 * i);
-      if (digit < 0x80) return value;
-    }
-    return broken("broken number");
-  }
-
-  Result<std::span<const std::byte>> take(std::uint64_t size) {
-    if (size > bytes_.size() - at_) return broken(text("block of ", size, " bytes where ", bytes_.size() - at_, " are left"));
-    const auto taken = bytes_.subspan(at_, static_cast<std::size_t>(size));
-    at_ += taken.size();
-    return taken;
-  }
-
-  Result<std::vector<std::byte>> stored(std::uint64_t decoded) {
-    LODESTONE_TRY(const auto bytes, take(decoded));
-    return std::vector<std::byte>(bytes.begin(), bytes.end());
-  }
-
-  Result<std::vector<std::byte>> run(std::uint64_t decoded) {
-    LODESTONE_TRY(const auto bytes, take(1));
-    return std::vector<std::byte>(static_cast<std::size_t>(decoded), bytes[0]);
-  }
-
-  Result<std::vector<std::byte>> compressed(std::uint64_t decoded) {
-    LODESTONE_TRY(const std::uint64_t size, varint());
-    LODESTONE_TRY(const auto bytes, take(size));
-    if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != decoded) return broken("zstd frame of another size");
-    std::vector<std::byte> out(static_cast<std::size_t>(decoded));
-    const std::size_t result = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
-    if (ZSTD_isError(result)) return broken(text("zstd: ", ZSTD_getErrorName(result)));
-    if (result != out.size()) return broken("zstd frame of another size");
-    return out;
-  }
-
-  std::span<const std::byte> bytes_;
-  std::size_t at_ = 0;
-  std::uint64_t budget_;
-};
-
 Result<void> parse_varints(std::span<const std::byte> bytes, std::vector<std::uint32_t>& values) {
   std::uint64_t value = 0;
   int shift = 0;
@@ -147,20 +73,6 @@ Result<void> parse_varints(std::span<const std::byte> bytes, std::vector<std::ui
   return {};
 }
 
-Result<void> decode_column(BlockReader& blocks, Column& column) {
-  LODESTONE_TRY(const std::vector<std::byte> first, blocks.next());
-  column.values.clear();
-  if (column.coding == Coding::Varint) return parse_varints(first, column.values);
-  column.values.reserve(first.size());
-  for (const std::byte b : first) column.values.push_back(static_cast<std::uint32_t>(b));
-  for (std::size_t plane = 1; plane < plane_count(column.coding); ++plane) {
-    LODESTONE_TRY(const std::vector<std::byte> bytes, blocks.next());
-    if (bytes.size() != first.size()) return fail(ErrorCode::Malformed, "planes of different sizes");
-    for (std::size_t i = 0; i < bytes.size(); ++i) column.values[i] |= static_cast<std::uint32_t>(bytes[i]) << (8 * plane);
-  }
-  return {};
-}
-
 }  // namespace
 
 CodedChunk encode_columns(std::span<const Column> columns, int zstd_level) {
@@ -177,10 +89,71 @@ CodedChunk encode_columns(std::span<const Column> columns, int zstd_level) {
   return chunk;
 }
 
-Result<void> decode_columns(std::span<const std::byte> bytes, std::uint64_t decoded_bytes, std::span<Column> columns) {
-  BlockReader blocks(bytes, decoded_bytes);
-  for (Column& column : columns) LODESTONE_CHECK(decode_column(blocks, column));
-  return blocks.finish();
+tl::unexpected<Error> ColumnReader::broken(const std::string& message) const {
+  return fail(ErrorCode::Malformed, message, at_);
+}
+
+Result<std::uint64_t> ColumnReader::varint() {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < kMaxVarintBytes && at_ < bytes_.size(); ++i) {
+    const auto digit = static_cast<std::uint8_t>(bytes_[at_++]);
+    value |= std::uint64_t{digit & 0x7fu} << (7 * i);
+    if (digit < 0x80) return value;
+  }
+  return broken("broken number");
+}
+
+Result<std::span<const std::byte>> ColumnReader::take(std::uint64_t size) {
+  if (size > bytes_.size() - at_) return broken(text("block of ", size, " bytes where ", bytes_.size() - at_, " are left"));
+  const auto taken = bytes_.subspan(at_, static_cast<std::size_t>(size));
+  at_ += taken.size();
+  return taken;
+}
+
+Result<std::vector<std::byte>> ColumnReader::block() {
+  if (at_ == bytes_.size()) return broken("ends before its last block");
+  const auto mode = static_cast<BlockMode>(bytes_[at_++]);
+  LODESTONE_TRY(const std::uint64_t decoded, varint());
+  if (decoded > budget_) return broken(text("block of ", decoded, " bytes where ", budget_, " are left to decode"));
+  budget_ -= decoded;
+  if (mode == BlockMode::Zstd) return zstd_block(static_cast<std::size_t>(decoded));
+  if (mode != BlockMode::Stored && mode != BlockMode::Run) return broken("unknown kind of block");
+  LODESTONE_TRY(const auto bytes, take(mode == BlockMode::Run ? 1 : decoded));
+  if (mode == BlockMode::Run) return std::vector<std::byte>(static_cast<std::size_t>(decoded), bytes[0]);
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+Result<std::vector<std::byte>> ColumnReader::zstd_block(std::size_t decoded) {
+  LODESTONE_TRY(const std::uint64_t size, varint());
+  LODESTONE_TRY(const auto bytes, take(size));
+  if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != decoded) return broken("zstd frame of another size");
+  std::vector<std::byte> out(decoded);
+  const std::size_t result = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
+  if (ZSTD_isError(result)) return broken(text("zstd: ", ZSTD_getErrorName(result)));
+  if (result != out.size()) return broken("zstd frame of another size");
+  return out;
+}
+
+Result<void> ColumnReader::read(Column& column) {
+  LODESTONE_TRY(const std::vector<std::byte> first, block());
+  column.values.clear();
+  if (column.coding == Coding::Varint) return parse_varints(first, column.values);
+  column.values.reserve(first.size());
+  for (const std::byte b : first) column.values.push_back(static_cast<std::uint32_t>(b));
+  for (std::size_t plane = 1; plane < plane_count(column.coding); ++plane) {
+    LODESTONE_TRY(const std::vector<std::byte> bytes, block());
+    if (bytes.size() != first.size()) return broken("planes of different sizes");
+    for (std::size_t i = 0; i < bytes.size(); ++i) column.values[i] |= static_cast<std::uint32_t>(bytes[i]) << (8 * plane);
+  }
+  return {};
+}
+
+Result<void> ColumnReader::finish() const {
+  if (budget_ != 0) return broken(text(budget_, " bytes are missing"));
+  const auto rest = bytes_.subspan(at_);
+  if (std::any_of(rest.begin(), rest.end(), [](std::byte b) { return b != std::byte{0}; }))
+    return broken("bytes follow its last block");
+  return {};
 }
 
 }  // namespace lodestone::detail

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <lodestone/core/result.h>
@@ -32,9 +33,28 @@ struct CodedChunk {
 /// Codes columns one after the other, each byte plane stored, as a run or with zstd, whichever is smallest.
 CodedChunk encode_columns(std::span<const Column> columns, int zstd_level);
 
-/// Decodes columns whose codings are given, from all of `bytes`. Allocates at most in proportion to `decoded_bytes`,
-/// which the columns have to amount to exactly. Errors: Malformed.
-Result<void> decode_columns(std::span<const std::byte> bytes, std::uint64_t decoded_bytes, std::span<Column> columns);
+/// Takes columns off the front of a coded chunk. Errors: Malformed.
+class ColumnReader {
+ public:
+  /// The columns have to amount to `decoded_bytes`; what is allocated is bounded by it.
+  ColumnReader(std::span<const std::byte> bytes, std::uint64_t decoded_bytes) : bytes_(bytes), budget_(decoded_bytes) {}
+
+  /// Reads the next column, whose coding is given, into `column.values`.
+  Result<void> read(Column& column);
+  /// Checks that nothing but padding is left.
+  Result<void> finish() const;
+
+ private:
+  tl::unexpected<Error> broken(const std::string& message) const;
+  Result<std::uint64_t> varint();
+  Result<std::span<const std::byte>> take(std::uint64_t size);
+  Result<std::vector<std::byte>> block();
+  Result<std::vector<std::byte>> zstd_block(std::size_t decoded);
+
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  std::uint64_t budget_;
+};
 
 /// Maps numbers of either sign, given modulo 2^32, so that those near 0 become small.
 constexpr std::uint32_t zigzag(std::uint32_t value) { return (value << 1) ^ (value >> 31 ? ~0u : 0u); }

@@ -28,6 +28,7 @@ inline constexpr std::uint32_t kMaxGroups = 65536;
 inline constexpr std::uint32_t kMaxAttributes = 64;
 inline constexpr std::uint32_t kMaxNameBytes = 255;
 inline constexpr std::uint32_t kMaxPolygonSize = 256;
+inline constexpr std::uint32_t kMaxWedgesPerRecord = 256;
 
 /// The header's fixed part, beside what StreamDirectory shows.
 struct StreamHeader {

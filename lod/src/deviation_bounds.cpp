@@ -45,26 +45,30 @@ DeviationBounds::DeviationBounds(const Mesh& full, double step)
     : full_(&full), step_(step),
       level_(full, measuring_options()),
       measured_faces_(full.face_count()),
-      moved_(full.face_count(), 0) {}
+      since_measured_(full.face_count()), since_start_(full.face_count()) {}
 
 void DeviationBounds::add(const RemovalRecord& record) {
+  const double displacement = displacement_bound(*full_, record);
+  for (Chain* chain : {&since_measured_, &since_start_}) chain->add(record, displacement);
+  bound_.push_back(round_up(std::min(measured_ + since_measured_.largest, since_start_.largest)));
+}
+
+void DeviationBounds::Chain::add(const RemovalRecord& record, double displacement) {
   float before = 0;
   for (const SectorPatch& sector : record.sectors)
-    for (const Index face : sector.faces) before = std::max(before, moved_[face]);
-  const float after = round_up(static_cast<double>(before) + displacement_bound(*full_, record));
+    for (const Index face : sector.faces) before = std::max(before, moved[face]);
+  const float after = round_up(static_cast<double>(before) + displacement);
   for (const SectorPatch& sector : record.sectors)
-    for (std::size_t i = 0; i < sector.triangles.size(); ++i) moved_[sector.faces[i]] = after;
-  largest_moved_ = std::max(largest_moved_, static_cast<double>(after));
-  bound_.push_back(round_up(measured_ + largest_moved_));
+    for (std::size_t i = 0; i < sector.triangles.size(); ++i) moved[sector.faces[i]] = after;
+  largest = std::max(largest, static_cast<double>(after));
 }
 
 void DeviationBounds::end_round(const Connectivity& current) {
   const auto threshold = static_cast<double>(measured_faces_) * (1 - step_);
   if (step_ <= 0 || bound_.empty() || static_cast<double>(current.face_count()) > threshold) return;
-  measured_ = level_.measure(current_level(*full_, current), largest_moved_).maximum_bound();
+  measured_ = level_.measure(current_level(*full_, current), since_measured_.largest).maximum_bound();
   measured_faces_ = current.face_count();
-  std::fill(moved_.begin(), moved_.end(), 0.0F);
-  largest_moved_ = 0;
+  since_measured_.reset();
   bound_.back() = round_up(std::min(static_cast<double>(bound_.back()), measured_));
 }
 

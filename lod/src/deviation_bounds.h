@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -29,12 +30,25 @@ class DeviationBounds {
   const std::vector<float>& bounds() const { return bound_; }
 
  private:
+  /// How far removals may have moved each face's points from where they were at some time.
+  struct Chain {
+    std::vector<float> moved;  // by face, mesh units
+    double largest = 0;
+
+    explicit Chain(std::size_t face_count) : moved(face_count, 0) {}
+    void add(const RemovalRecord& record, double displacement);
+    void reset() {
+      std::fill(moved.begin(), moved.end(), 0.0F);
+      largest = 0;
+    }
+  };
+
   const Mesh* full_;
   double step_;
   LevelDeviation level_;
   std::size_t measured_faces_;
-  std::vector<float> moved_;  // by face: how far its points may lie from the last measured mesh
-  double largest_moved_ = 0;
+  Chain since_measured_;
+  Chain since_start_;
   double measured_ = 0;  // bound of the last measured mesh
   std::vector<float> bound_;
 };

@@ -30,37 +30,34 @@ Triple bits_of(const Vec3f& p) {
   return {bits(p.x), bits(p.y), bits(p.z)};
 }
 
-/// What names the faces of the original and of its levels alike: sorted corners, in the original's vertices.
-class FaceNames {
+/// Finds the original's vertices by their positions.
+class VertexFinder {
  public:
-  explicit FaceNames(const Mesh& original)
-      : vertex_at_(original.vertex_count()), vertex_count_(original.vertex_count()) {
-    for (Index v = 0; v < vertex_count_; ++v) vertex_at_.insert(bits_of(original.positions[v]), v);
+  explicit VertexFinder(const Mesh& original) : vertex_at_(original.vertex_count()) {
+    for (Index v = 0; v < original.vertex_count(); ++v) vertex_at_.insert(bits_of(original.positions[v]), v);
   }
 
-  /// Returns the original's vertex at each vertex of `mesh`; elsewhere a number that no other vertex has.
-  std::vector<Index> vertices_of(const Mesh& mesh) const {
-    std::vector<Index> names(mesh.vertex_count());
-    for (Index v = 0; v < names.size(); ++v) {
-      const Index found = vertex_at_.find(bits_of(mesh.positions[v]));
-      names[v] = found != kNoIndex ? found : static_cast<Index>(vertex_count_ + v);
-    }
-    return names;
+  /// Returns the original's vertex at each vertex of `mesh`, the first where several are; kNoIndex where none is.
+  std::vector<Index> find_all(const Mesh& mesh) const {
+    std::vector<Index> found(mesh.vertex_count());
+    for (Index v = 0; v < found.size(); ++v) found[v] = vertex_at_.find(bits_of(mesh.positions[v]));
+    return found;
   }
-
-  bool is_original(Index vertex_name) const { return vertex_name < vertex_count_; }
 
  private:
   TripleTable vertex_at_;
-  std::size_t vertex_count_;
 };
 
+/// What names a face of the original and of its levels alike: its corners in the original's vertices, ascending.
 Triple face_name(const Mesh& mesh, const std::vector<Index>& vertex_names, Index face) {
   Triple name;
   for (Index i = 0; i < 3; ++i) name[i] = vertex_names[mesh.corner_vertex(3 * face + i)];
   std::sort(name.begin(), name.end());
   return name;
 }
+
+/// Whether all corners are vertices of the original.
+bool is_known(const Triple& name) { return name[2] != kNoIndex; }
 
 }  // namespace
 
@@ -81,7 +78,7 @@ struct LevelDeviation::Impl {
   DeviationOptions options;
   SurfaceIndex index;
   PatchBound patch;
-  FaceNames names;
+  VertexFinder vertices;
   TripleTable original_faces;
   std::vector<Index> face_at;  // A face at each of the original's vertices, by name; kNoIndex: none.
   SurfaceBounds forward;       // Of the original, to the last level.
@@ -98,11 +95,11 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
       options(options_),
       index(mesh),
       patch(mesh),
-      names(mesh),
+      vertices(mesh),
       original_faces(mesh.face_count()),
       face_at(mesh.vertex_count(), kNoIndex),
       forward(mesh, true) {
-  const std::vector<Index> vertex_names = names.vertices_of(mesh);
+  const std::vector<Index> vertex_names = vertices.find_all(mesh);
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triple name = face_name(mesh, vertex_names, f);
     original_faces.insert(name, f);
@@ -115,13 +112,14 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
 
 /// Carries what is known over to a new level; returns what is known of the level's own faces.
 SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
-  const std::vector<Index> vertex_names = names.vertices_of(level);
+  const std::vector<Index> vertex_names = vertices.find_all(level);
   SurfaceBounds backward(level, false);
   TripleTable faces_now(level.face_count());
   std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.
-  std::vector<Index> same_face(level.face_count());            // The original's face for each of the level's.
+  std::vector<Index> same_face(level.face_count(), kNoIndex);  // The original's face for each of the level's.
   for (Index f = 0; f < level.face_count(); ++f) {
     const Triple name = face_name(level, vertex_names, f);
+    if (!is_known(name)) continue;
     faces_now.insert(name, f);
     if (const Index before = level_faces.find(name); before != kNoIndex) {
       face_now[before] = f;
@@ -168,7 +166,7 @@ void LevelDeviation::Impl::anchor_common_vertices(const Mesh& level, const std::
   for (Index corner = 0; corner < level.corner_wedge.size(); ++corner) {
     const Index v = level.corner_vertex(corner);
     const Index name = vertex_names[v];
-    if (!names.is_original(name) || face_at[name] == kNoIndex) continue;
+    if (name == kNoIndex || face_at[name] == kNoIndex) continue;
     forward.vertices[name] = {0, face_of_corner(corner), true};
     backward.vertices[v] = {0, face_at[name], true};
   }

@@ -46,6 +46,7 @@ class Simplifier {
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
   bool target_met();
+  bool held_by_curvature() const;
   BlockedCounts count_blocked() const;
 
   SimplifyOptions options_;
@@ -172,6 +173,13 @@ bool Simplifier::run_round() {
   return removed_any || !candidates_.empty();
 }
 
+/// Whether a legal removal is left that only the limit on the curvature error forbids.
+bool Simplifier::held_by_curvature() const {
+  for (Index v = 0; v < verdict_.size(); ++v)
+    if (state_.connectivity.has_vertex(v) && verdict_[v] == Verdict::Legal) return true;
+  return false;
+}
+
 BlockedCounts Simplifier::count_blocked() const {
   BlockedCounts blocked;
   for (Index v = 0; v < verdict_.size(); ++v) {
@@ -212,6 +220,7 @@ SimplifyResult Simplifier::run() {
       break;
     }
   }
+  if (stop_reason_ == StopReason::Stuck && held_by_curvature()) stop_reason_ = StopReason::CurvatureError;
   SimplifyResult result;
   result.stop_reason = stop_reason_;
   result.blocked = count_blocked();

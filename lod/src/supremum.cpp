@@ -37,12 +37,14 @@ double bound_by_length(const Corners& c) {
                    c[2].distance + std::max(e12, e20)});
 }
 
-/// The face to look for a patch from.
-Index start_of(const Corners& corners) {
-  for (const PieceCorner& corner : corners) {
-    if (corner.face != kNoIndex) return corner.face;
-  }
-  return kNoIndex;
+bool all_near_faces(const Corners& c) {
+  return c[0].face != kNoIndex && c[1].face != kNoIndex && c[2].face != kNoIndex;
+}
+
+/// The bound where one face is known to be near all corners; infinity elsewhere.
+double bound_by_same_face(const Corners& c) {
+  const bool same = c[0].face != kNoIndex && c[0].face == c[1].face && c[0].face == c[2].face;
+  return same ? std::max({c[0].distance, c[1].distance, c[2].distance}) : kUnbounded;
 }
 
 /// Where a difference that is `from` at one end and `towards`, of the other sign, at the other end vanishes.
@@ -133,14 +135,16 @@ void SupremumSearch::visit_vertices(Goal& goal) {
   }
 }
 
+/// Bounds a face by the cheapest means that will do. Vertices come first: what they know serves all faces around them.
 void SupremumSearch::visit_face(Index face, Goal& goal) {
   bool patch_tried = false;
   do {
     const Corners corners = corners_of(face);
     const std::array<Index, 3> nearest = {corners[0].face, corners[1].face, corners[2].face};
-    bounds_.lower(face, bound_by_length(corners), nearest);
-    if (!patch_tried && is_open(face, goal)) {
-      patch_tried = start_of(corners) != kNoIndex;
+    bounds_.lower(face, std::min(bound_by_length(corners), bound_by_same_face(corners)), nearest);
+    if (!all_near_faces(corners)) continue;
+    if (is_open(face, goal) && !patch_tried) {
+      patch_tried = true;
       const double bound = bound_by_patch(corners, goal);
       bounds_.lower(face, bound, to_patch_.patch());
     }
@@ -154,20 +158,21 @@ double SupremumSearch::bound_by_corners(const Corners& corners, const Goal& goal
   return bound.value();
 }
 
+/// Pre: the first corner is near a face.
 double SupremumSearch::bound_by_patch(const Corners& c, const Goal& goal) {
-  const Index start = start_of(c);
-  if (start == kNoIndex) return kUnbounded;
-  return to_patch_.bound({c[0].point, c[1].point, c[2].point}, start, goal.threshold(), goal.patch_slack());
+  return to_patch_.bound({c[0].point, c[1].point, c[2].point}, c[0].face, goal.threshold(), goal.patch_slack());
 }
 
-/// Finds the nearest face of one of the face's vertices; false where all are known.
+/// Finds the nearest face of one of the face's vertices, first of those that know none; false where all are known.
 bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
   Index hint = kNoIndex;
   Index vertex = kNoIndex;
   for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
     const Index v = from_.corner_vertex(corner);
-    if (!bounds_.vertices[v].exact) vertex = v;
-    if (bounds_.vertices[v].face != kNoIndex) hint = bounds_.vertices[v].face;
+    const Anchor& anchor = bounds_.vertices[v];
+    if (anchor.face != kNoIndex) hint = anchor.face;
+    if (anchor.exact) continue;
+    if (vertex == kNoIndex || anchor.face == kNoIndex) vertex = v;
   }
   if (vertex == kNoIndex) return false;
   const PieceCorner nearest = query(Vec3(from_.positions[vertex]), hint, face, goal);

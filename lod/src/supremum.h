@@ -77,7 +77,7 @@ class SupremumSearch {
 
   /// Lowers the faces' bounds as far as the goal asks and queries at vertices can.
   void visit_vertices(Goal& goal);
-  /// Splits faces until all bounds meet the goal or `budget` queries are spent.
+  /// Splits faces until all bounds meet the goal or `budget` pieces were halved.
   void split_faces(Goal& goal, std::size_t budget);
 
   /// Starts from a point of the mesh that is likely far away.

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include <lodestone/core/mesh.h>
 
 namespace lodestone::detail {

@@ -19,7 +19,11 @@
 
 namespace lodestone::test {
 
+#if LODESTONE_CATCH2_VERSION == 3
 using Catch::Approx;
+#else
+using Catch::Detail::Approx;
+#endif
 
 /// Matches strings that contain `text`; version 3 gave version 2's `Contains` another name.
 inline auto contains(const std::string& text) {

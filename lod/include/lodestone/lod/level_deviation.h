@@ -8,7 +8,8 @@
 
 namespace lodestone {
 
-/// Measures how far one level after another of a mesh is from it; each measurement starts from what the last one proved.
+/// Measures how far one level after another of a mesh is from it, each time starting from what was proved the last
+/// time.
 ///
 /// Faces are recognised by their corners' positions. A face that a level shares with the original deviates by 0; one
 /// that it shares with the level before keeps the bound it had; and what was near a face that is still there is no

@@ -1,0 +1,100 @@
+#include <lodestone/core/assemble.h>
+
+#include <cmath>
+#include <limits>
+
+#include <lodestone/core/validate.h>
+
+#include "support/mesh_properties.h"
+
+namespace lodestone::test {
+namespace {
+
+TriangleSoup two_triangles() {
+  TriangleSoup soup;
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  soup.indices = {0, 1, 2, 3, 4, 5};
+  return soup;
+}
+
+}  // namespace
+
+TEST_CASE("assemble welds equal positions and keeps every triangle of a clean shape") {
+  for (const NamedShape& shape : manifold_shapes()) {
+    INFO(shape.name);
+    const Mesh mesh = mesh_of(shape.soup);
+    CHECK(validate(mesh));
+    CHECK(mesh.face_count() == shape.soup.indices.size() / 3);
+    // Going through a soup again changes nothing: welding is complete.
+    CHECK(triangle_set(mesh_of(to_soup(mesh))) == triangle_set(mesh));
+  }
+}
+
+TEST_CASE("assemble makes every shape manifold") {
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const Mesh mesh = mesh_of(shape.soup);
+    CHECK(validate(mesh));
+    const auto connectivity = Connectivity::build(mesh);
+    REQUIRE(connectivity);
+    CHECK(validate(*connectivity));
+  }
+}
+
+TEST_CASE("assemble joins points at one position into a vertex, and into a wedge only where attributes agree") {
+  TriangleSoup soup = two_triangles();
+  CHECK(mesh_of(soup).vertex_count() == 4);
+  CHECK(mesh_of(soup).wedge_count() == 4);
+  Attribute id{"_ID", ComponentType::UInt8, 1, false, {}};
+  for (int i = 0; i < 6; ++i) id.data.push_back(std::byte(i));
+  soup.attributes.push_back(id);
+  CHECK(mesh_of(soup).vertex_count() == 4);
+  CHECK(mesh_of(soup).wedge_count() == 6);
+}
+
+TEST_CASE("assemble treats minus zero and zero as one place") {
+  TriangleSoup soup = two_triangles();
+  soup.positions[1].y = -0.0F;
+  CHECK(mesh_of(soup).vertex_count() == 4);
+}
+
+TEST_CASE("assemble drops what is no triangle and counts it") {
+  TriangleSoup soup = two_triangles();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  soup.positions.insert(soup.positions.end(), {{nan, 0, 0}, {INFINITY, 0, 0}, {7, 7, 7}});
+  soup.indices.insert(soup.indices.end(), {0, 1, 6, 0, 7, 2, 0, 1, 3, 1, 2, 0});
+  const auto assembled = assemble(soup);
+  REQUIRE(assembled);
+  CHECK(assembled->report.nonfinite_faces == 2);
+  CHECK(assembled->report.degenerate_faces == 1);
+  CHECK(assembled->report.duplicate_faces == 1);
+  CHECK(assembled->report.unused_points == 1);
+  CHECK(assembled->mesh.face_count() == 2);
+}
+
+TEST_CASE("assemble cuts where sheets meet, without losing a triangle or moving a corner") {
+  for (const NamedShape& shape : all_shapes()) {
+    if (shape.manifold || shape.name.find("dirty") != std::string::npos) continue;
+    INFO(shape.name);
+    const auto assembled = assemble(shape.soup);
+    REQUIRE(assembled);
+    CHECK(assembled->report.nonmanifold_edges + assembled->report.cut_vertices > 0);
+    CHECK(assembled->mesh.face_count() == shape.soup.indices.size() / 3);
+  }
+}
+
+TEST_CASE("assemble names the index or length at fault") {
+  TriangleSoup soup = two_triangles();
+  soup.indices[4] = 6;
+  auto result = assemble(soup);
+  REQUIRE_FALSE(result);
+  CHECK(result.error().code == ErrorCode::InvalidArgument);
+  CHECK(result.error().message == "index 4 is 6, beyond the 6 points");
+  soup.indices.pop_back();
+  CHECK(assemble(soup).error().message == "index count 5 is not a multiple of 3");
+  soup.indices = {0, 1, 2};
+  soup.attributes.push_back({"NORMAL", ComponentType::Float32, 3, false, {}});
+  CHECK(assemble(soup).error().message == "attribute NORMAL has 0 bytes for 6 points of 12");
+}
+
+}  // namespace lodestone::test

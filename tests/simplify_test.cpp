@@ -1,0 +1,247 @@
+#include <lodestone/lod/simplify.h>
+
+#include <cstring>
+
+#include <lodestone/core/validate.h>
+#include <lodestone/lod/cursor.h>
+#include <lodestone/lod/deviation.h>
+
+#include "support/data.h"
+#include "support/mesh_properties.h"
+#include "support/random.h"
+
+namespace lodestone::test {
+namespace {
+
+SimplifyResult simplified(const Mesh& mesh, const SimplifyOptions& options = {}) {
+  auto result = simplify(mesh, options);
+  REQUIRE(result);
+  return std::move(*result);
+}
+
+/// Everything a level is made of, to compare byte for byte.
+std::vector<std::vector<Index>> buffers(const Cursor& cursor, std::size_t group_count) {
+  std::vector<std::vector<Index>> all;
+  for (std::size_t g = 0; g < group_count; ++g)
+    all.emplace_back(cursor.corners(g).begin(), cursor.corners(g).end());
+  return all;
+}
+
+const Metric kMetrics[] = {Metric::Hybrid, Metric::Gaussian, Metric::Mean, Metric::Principal};
+
+}  // namespace
+
+TEST_CASE("the finest level is the input: the same triangles, attributes and materials, bit for bit") {
+  for (const NamedShape& shape : all_shapes())
+    for (const Metric metric : kMetrics) {
+      INFO(shape.name << " metric " << static_cast<int>(metric));
+      const Mesh mesh = mesh_of(shape.soup);
+      SimplifyOptions options;
+      options.metric = metric;
+      const SimplifyResult result = simplified(mesh, options);
+      const auto valid = validate(result.mesh);
+      INFO((valid ? "" : valid.error().message));
+      REQUIRE(valid);
+      Cursor cursor(result.mesh);
+      cursor.seek(static_cast<Index>(result.mesh.record_count()));
+      CHECK(triangle_set(extract_level(result.mesh, cursor)) == triangle_set(mesh));
+    }
+}
+
+TEST_CASE("every level is manifold, has the surface's topology, and refines to the same bytes it was coarsened from") {
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const Mesh mesh = mesh_of(shape.soup);
+    const auto full = Connectivity::build(mesh);
+    REQUIRE(full);
+    const SimplifyResult result = simplified(mesh);
+    Cursor cursor(result.mesh);
+    std::vector<std::vector<std::vector<Index>>> seen;
+    for (Index p = 0;; ++p) {
+      const Mesh level = extract_level(result.mesh, cursor);
+      const auto connectivity = Connectivity::build(level);
+      REQUIRE(connectivity);
+      REQUIRE(validate(*connectivity));
+      REQUIRE(euler_characteristic(*connectivity) == euler_characteristic(*full));
+      seen.push_back(buffers(cursor, result.mesh.groups.size()));
+      if (p == result.mesh.record_count()) break;
+      cursor.refine();
+    }
+    while (cursor.position() > 0) {
+      cursor.coarsen();
+      REQUIRE(buffers(cursor, result.mesh.groups.size()) == seen[cursor.position()]);
+    }
+    // Seeking does not depend on the path.
+    Random random(5);
+    for (int i = 0; i < 20; ++i) {
+      cursor.seek(static_cast<Index>(random.below(seen.size())));
+      REQUIRE(buffers(cursor, result.mesh.groups.size()) == seen[cursor.position()]);
+    }
+  }
+}
+
+TEST_CASE("records of one round touch different faces") {
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const SimplifyResult result = simplified(mesh_of(shape.soup));
+    const ProgressiveMesh& mesh = result.mesh;
+    for (std::size_t r = 0; r + 1 < mesh.round_begin.size(); ++r) {
+      std::set<Index> ring;
+      std::size_t total = 0;
+      for (Index k = mesh.round_begin[r]; k < mesh.round_begin[r + 1]; ++k) {
+        std::set<Index> own;
+        for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s)
+          for (std::uint64_t i = mesh.polygon_begin[s]; i < mesh.polygon_begin[s + 1]; ++i)
+            own.insert(mesh.wedge_vertex[mesh.polygons[i]]);
+        total += own.size();
+        ring.insert(own.begin(), own.end());
+      }
+      CHECK(ring.size() == total);
+    }
+  }
+}
+
+TEST_CASE("the deviation bound of a level is never below its measured deviation") {
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const Mesh mesh = mesh_of(shape.soup);
+    const SimplifyResult result = simplified(mesh);
+    Cursor cursor(result.mesh);
+    const double diagonal = bounding_box(mesh).diagonal();
+    const auto step = static_cast<Index>(1 + result.mesh.record_count() / (kReduced ? 6 : 25));
+    for (Index p = 0; p <= result.mesh.record_count(); p += step) {
+      cursor.seek(p);
+      DeviationOptions options;
+      options.sample_count = 3000;
+      const Deviation measured = measure_deviation(mesh, extract_level(result.mesh, cursor), options);
+      CHECK(measured.maximum() <= static_cast<double>(result.mesh.deviation[p]) + 1e-6 * diagonal);
+    }
+    CHECK(result.mesh.deviation.back() == 0);
+  }
+}
+
+TEST_CASE("without measuring, the added-up bound holds as well and is no tighter") {
+  const Mesh mesh = mesh_of(icosphere(3, 0.05, 3));
+  SimplifyOptions options;
+  options.measure_step = 0;
+  const SimplifyResult loose = simplified(mesh, options);
+  const SimplifyResult tight = simplified(mesh);
+  REQUIRE(loose.mesh.record_count() == tight.mesh.record_count());
+  for (std::size_t p = 0; p < loose.mesh.deviation.size(); ++p)
+    CHECK(loose.mesh.deviation[p] >= tight.mesh.deviation[p] * 0.999F - 1e-6F);
+}
+
+TEST_CASE("flat and straight parts go at no deviation") {
+  const Mesh mesh = mesh_of(cube(6));
+  const SimplifyResult result = simplified(mesh);
+  CHECK(face_counts(result.mesh)[position_for_deviation(result.mesh, 1e-5)] == 12);
+  const Mesh flat = mesh_of(grid(6, 0, 1));
+  const SimplifyResult flat_result = simplified(flat);
+  CHECK(face_counts(flat_result.mesh)[position_for_deviation(flat_result.mesh, 1e-6)] == 2);
+}
+
+TEST_CASE("selection: at most the faces asked for, and the fewest within the error asked for") {
+  const Mesh mesh = mesh_of(terrain(24, 9));
+  const SimplifyResult result = simplified(mesh);
+  const std::vector<Index> counts = face_counts(result.mesh);
+  CHECK(std::is_sorted(counts.begin(), counts.end()));
+  CHECK(counts.back() == mesh.face_count());
+  for (const std::uint64_t faces : {100U, 101U, 500U, 100000U}) {
+    const Index p = position_for_faces(result.mesh, faces);
+    CHECK(counts[p] <= faces);
+    if (p + 1 < counts.size()) CHECK(counts[p + 1] > faces);
+  }
+  CHECK(position_for_faces(result.mesh, 0) == 0);
+  Index last = static_cast<Index>(result.mesh.record_count());
+  for (const double e : {0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1e3}) {
+    const Index p = position_for_deviation(result.mesh, e);
+    CHECK(static_cast<double>(result.mesh.deviation[p]) <= e);
+    for (Index coarser = 0; coarser < p; ++coarser) CHECK(static_cast<double>(result.mesh.deviation[coarser]) > e);
+    CHECK(p <= last);
+    last = p;
+  }
+}
+
+TEST_CASE("curvature errors never fall towards the base, and stop a run where told to") {
+  const Mesh mesh = mesh_of(icosphere(3, 0.02, 4));
+  SimplifyOptions options;
+  options.metric = Metric::Mean;
+  const SimplifyResult all = simplified(mesh, options);
+  CHECK(std::is_sorted(all.mesh.curvature_error.rbegin(), all.mesh.curvature_error.rend()));
+  const float middle = all.mesh.curvature_error[all.mesh.record_count() / 2];
+  options.stop.max_curvature_error = static_cast<double>(middle);
+  const SimplifyResult part = simplified(mesh, options);
+  CHECK(part.stop_reason == StopReason::CurvatureError);
+  CHECK(part.mesh.record_count() > 0);
+  CHECK(part.mesh.record_count() < all.mesh.record_count());
+  CHECK(part.mesh.curvature_error.front() <= middle);
+}
+
+TEST_CASE("a run stops at the faces asked for, at the deviation asked for, or when told to") {
+  const Mesh mesh = mesh_of(torus(24, 16));
+  SimplifyOptions options;
+  options.stop.min_faces = 300;
+  SimplifyResult result = simplified(mesh, options);
+  CHECK(result.stop_reason == StopReason::Faces);
+  CHECK(face_counts(result.mesh).front() <= 300);
+  CHECK(face_counts(result.mesh).front() >= 298);
+  options = {};
+  options.stop.max_deviation = 0.02;
+  result = simplified(mesh, options);
+  CHECK(result.stop_reason == StopReason::Deviation);
+  options = {};
+  options.progress = [](double share) { return share < 0.5; };
+  result = simplified(mesh, options);
+  CHECK(result.stop_reason == StopReason::Cancelled);
+  CHECK(validate(result.mesh));
+}
+
+TEST_CASE("the same input gives the same records") {
+  const Mesh mesh = mesh_of(seam_sphere(24, 16));
+  const SimplifyResult a = simplified(mesh);
+  const SimplifyResult b = simplified(mesh);
+  CHECK(a.mesh.polygons == b.mesh.polygons);
+  CHECK(a.mesh.slots == b.mesh.slots);
+  CHECK(a.mesh.triangles == b.mesh.triangles);
+  CHECK(a.mesh.deviation == b.mesh.deviation);
+  CHECK(a.mesh.positions == b.mesh.positions);
+}
+
+TEST_CASE("copies of cut vertices stay where they are at every level, so no crack opens") {
+  for (const NamedShape& shape : all_shapes()) {
+    if (shape.manifold) continue;
+    INFO(shape.name);
+    const Mesh mesh = mesh_of(shape.soup);
+    const auto full = Connectivity::build(mesh);
+    REQUIRE(full);
+    std::size_t copies = 0;
+    for (Index v = 0; v < mesh.vertex_count(); ++v) copies += full->kind(v) == VertexKind::NonManifold ? 1 : 0;
+    const SimplifyResult result = simplified(mesh);
+    CHECK(result.mesh.base_vertex_count >= copies);
+    CHECK(result.blocked.locked >= copies);
+  }
+}
+
+TEST_CASE("an error in the record's numbers is found") {
+  const SimplifyResult result = simplified(mesh_of(seam_cube(3)));
+  const auto message = [&](auto&& spoil) {
+    ProgressiveMesh mesh = result.mesh;
+    spoil(mesh);
+    const auto valid = validate(mesh);
+    return valid ? std::string("valid") : valid.error().message;
+  };
+  CHECK(message([](ProgressiveMesh&) {}) == "valid");
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.polygons[0] = 100000; }), contains("names wedge 100000 before it exists"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.slots[0] = 100000; }), contains("names face 100000"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.triangles[2] = 200; }), contains("triangle outside its polygon"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors[0].group = 9; }), contains("names group 9"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors[0].closed = 7; }), contains("polygon of"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.deviation[0] = -1; }), contains("error that is negative"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.groups[0].face_count += 1; }), contains("are due"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.positions.pop_back(); }), contains("positions has"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.round_begin.back() += 1; }), contains("round_begin"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.groups.clear(); }), contains("group"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.wedge_vertex.back() = 0; }), contains("wedge"));
+}
+
+}  // namespace lodestone::test
