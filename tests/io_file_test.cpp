@@ -8,9 +8,7 @@
 #include "support/catch.h"
 #include "support/data.h"
 
-using namespace lodestone;
-using namespace lodestone::test;
-
+namespace lodestone::test {
 namespace {
 
 std::vector<std::byte> bytes_of(const std::string& text) {
@@ -77,3 +75,5 @@ TEST_CASE("devices are written through, not replaced") {
   REQUIRE(write_file("/dev/null", bytes_of("x")));
   CHECK(std::filesystem::is_character_file("/dev/null"));
 }
+
+}  // namespace lodestone::test

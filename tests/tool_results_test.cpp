@@ -184,7 +184,8 @@ TEST_CASE("extract gives back the whole mesh for an error of 0") {
     CAPTURE(name);
     REQUIRE(shop.extract("--error", "0", name).exit_code == 0);
     CHECK(shop.faces_of(name) == shop.faces_of("in.obj"));
-    CHECK(shop.compare(name)["deviation"]["max"] == 0);
+    // Nearest points are computed: a point of the surface itself may come out a rounding error away.
+    CHECK(shop.compare(name)["deviation"]["max"].get<double>() < 1e-12);
   }
 }
 

@@ -126,7 +126,7 @@ void print_stream(const StreamDirectory& directory) {
 }
 
 void print_asset(const std::string& path, const Asset& asset, const StreamDirectory* directory) {
-  std::printf("%s: %llu bytes, %llu of them neither level nor stream\n", path.c_str(),
+  std::printf("%s: %llu bytes, %llu of them neither level nor stream; errors in the file's units\n", path.c_str(),
               static_cast<unsigned long long>(asset.total_bytes), static_cast<unsigned long long>(other_bytes(asset)));
   print_levels(asset);
   if (directory != nullptr) print_stream(*directory);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace lodestone::detail {
 namespace {
@@ -18,7 +19,8 @@ constexpr double kMinNormalCosine = 0.2;      // a new face may turn this far fr
 constexpr double kMinShape = 1e-3;            // a new face's height over its longest edge
 constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured      //
                                               // triangulations, by swept volume, that are measured in full
-constexpr double kLineWeight = 1;             // of a border's or feature line's own displacement
+constexpr double kBridgeWeight = 3;           // of new surface where the star had none, against distances of points
+constexpr double kLineWeight = 1;             // of a border or feature line that moves
 constexpr double kTieBreak = 0.2;             // weight of the volume swept, as a length, against a pure curvature error
 constexpr double kMinCurvatureChange = 1e-4;  // radians; below it curvature no longer separates removals
 
@@ -393,6 +395,29 @@ double RemovalEvaluator::largest_change() const {
   return largest;
 }
 
+/// Sums the squared distances of the coarse faces' centroids and their new edges' midpoints to the star: the surface
+/// where nothing was, as over a notch that the carried points do not see.
+double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
+  points_.clear();
+  for (const PolygonTriangle t : triangles) {
+    const Vec3& a = position(sector, t.a);
+    const Vec3& b = position(sector, t.b);
+    const Vec3& c = position(sector, t.c);
+    points_.add((a + b + c) * (1.0 / 3) - center_);
+    for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}})
+      if (!is_rim(sector, from, to) && (from < to || from + 1U == sector.size()))
+        points_.add((position(sector, from) + position(sector, to)) * 0.5 - center_);
+  }
+  nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
+  distance_.resize(points_.size());
+  for (std::size_t i = 0; i < sector.patch->face_count(); ++i) {
+    squared_distances(points_, {Vec3{}, position(sector, i) - center_, position(sector, i + 1) - center_},
+                      distance_.data());
+    for (std::size_t p = 0; p < nearest_.size(); ++p) nearest_[p] = std::min(nearest_[p], distance_[p]);
+  }
+  return std::accumulate(nearest_.begin(), nearest_.end(), 0.0);
+}
+
 /// What a border or feature line is charged for its own displacement: √(√A · D) with A the area it sweeps and D the
 /// distance of all its removed vertices to the new edge, a length.
 double RemovalEvaluator::line_cost(Index vertex) const {
@@ -422,7 +447,7 @@ Evaluation RemovalEvaluator::combine(Index vertex, const RemovalRecord& record) 
     squared_volume += squared_volume_sum(sector, triangles);
     if (!is_hybrid) continue;
     if (sectors_.size() > 1) gather_points(sector);
-    squared_distance += squared_distance_sum(sector, triangles);
+    squared_distance += squared_distance_sum(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
   }
   add_closing_curvature();
   Evaluation result{Verdict::Legal, 0, largest_change()};

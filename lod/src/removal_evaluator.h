@@ -93,6 +93,7 @@ class RemovalEvaluator {
   void add_coarse_curvature(Sector& sector, Triangles triangles);
   void add_closing_curvature();
   double largest_change() const;
+  double bridge_sum(const Sector& sector, Triangles triangles);
   double line_cost(Index vertex) const;
   Evaluation combine(Index vertex, const RemovalRecord& record);
 
@@ -130,6 +131,7 @@ class RemovalEvaluator {
   PointBatch points_;                     // the sector's carried points
   std::vector<float> weights_;            // of those points
   std::vector<float> nearest_;
+  std::vector<float> distance_;
   std::vector<Triangle> table_;
   Triangle untabulated_;
   std::vector<std::pair<double, int>> ranked_;

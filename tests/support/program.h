@@ -33,17 +33,18 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
 
 /// Quotes a word for the shell.
 inline std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+  std::string out(1, '\'');
+  for (const char c : word) out.append(c == '\'' ? std::string("'\\''") : std::string(1, c));
+  return out.append(1, '\'');
 }
 
 /// Runs the lodestone program under test, without a terminal.
 inline ProgramRun run_program(const std::vector<std::string>& arguments) {
   const ScratchDirectory scratch;
   std::string command = quoted(LODESTONE_PROGRAM);
-  for (const std::string& argument : arguments) command += " " + quoted(argument);
-  command += " </dev/null >" + quoted((scratch / "out").string()) + " 2>" + quoted((scratch / "err").string());
+  for (const std::string& argument : arguments) command.append(" ").append(quoted(argument));
+  command.append(" </dev/null >").append(quoted((scratch / "out").string()));
+  command.append(" 2>").append(quoted((scratch / "err").string()));
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(scratch / "out"), file_text(scratch / "err")};
 }

@@ -1,0 +1,236 @@
+#include <lodestone/io/asset.h>
+
+#include <cstring>
+#include <string>
+
+#include <lodestone/io/file.h>
+#include <lodestone/io/read_mesh.h>
+
+#include "support/data.h"
+#include "support/mesh_properties.h"
+
+namespace lodestone::test {
+namespace {
+
+/// Levels of a shape in three resolutions.
+std::vector<AssetLevel> sphere_levels() {
+  std::vector<AssetLevel> levels(3);
+  for (int i = 0; i < 3; ++i) {
+    AssetLevel& level = levels[static_cast<std::size_t>(i)];
+    level.mesh = mesh_of(icosphere(3 - i, 0, 1));
+    level.deviation.forward.maximum = 0.01 * i;
+    level.deviation.backward.mean = 0.001 * i;
+    level.curvature_error = 0.1 * i;
+    level.stop_reason = "faces";
+  }
+  return levels;
+}
+
+EncodedAsset encoded(std::span<const AssetLevel> levels, const AssetOptions& options, std::size_t stream_bytes = 0) {
+  const std::vector<std::byte> stream(stream_bytes, std::byte{7});
+  auto asset = encode_asset(levels, stream, options);
+  INFO((asset ? std::string() : asset.error().message));
+  REQUIRE(asset);
+  return std::move(*asset);
+}
+
+Asset decoded(const EncodedAsset& asset) {
+  auto read = read_asset_bytes(asset.glb);
+  INFO((read ? std::string() : read.error().message));
+  REQUIRE(read);
+  return std::move(*read);
+}
+
+std::string json_of(const EncodedAsset& asset) {
+  std::uint32_t size = 0;
+  std::memcpy(&size, asset.glb.data() + 12, sizeof size);
+  return {reinterpret_cast<const char*>(asset.glb.data()) + 20, size};
+}
+
+/// The largest distance of a vertex to the vertex of the other mesh nearest to it.
+double farthest_vertex(const Mesh& a, const Mesh& b) {
+  double farthest = 0;
+  for (const Vec3f& p : a.positions) {
+    double nearest = 1e9;
+    for (const Vec3f& q : b.positions) nearest = std::min(nearest, length(Vec3(p) - Vec3(q)));
+    farthest = std::max(farthest, nearest);
+  }
+  return farthest;
+}
+
+}  // namespace
+
+TEST_CASE("plain levels read back bit for bit, with their numbers") {
+  AssetOptions options;
+  options.draco = false;
+  const auto levels = sphere_levels();
+  const Asset asset = decoded(encoded(levels, options, 99));
+  REQUIRE(asset.levels.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(triangle_set(asset.levels[i].mesh) == triangle_set(levels[i].mesh));
+    CHECK(asset.levels[i].maximum_deviation == levels[i].deviation.maximum());
+    CHECK(asset.levels[i].mean_deviation == levels[i].deviation.backward.mean);
+    CHECK(asset.levels[i].curvature_error == levels[i].curvature_error);
+    CHECK_FALSE(asset.levels[i].draco);
+  }
+  CHECK(asset.stream == std::vector<std::byte>(99, std::byte{7}));
+}
+
+TEST_CASE("draco levels keep their faces and move no vertex farther than half a step") {
+  for (const int bits : {8, 14, 20}) {
+    AssetOptions options;
+    options.draco_position_bits = bits;
+    const auto levels = sphere_levels();
+    const Asset asset = decoded(encoded(levels, options));
+    REQUIRE(asset.levels.size() == 3);
+    const double step = 2.0 / (std::pow(2.0, bits) - 1);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(asset.levels[i].draco);
+      CHECK(asset.levels[i].mesh.face_count() == levels[i].mesh.face_count());
+      CHECK(farthest_vertex(levels[i].mesh, asset.levels[i].mesh) <= 0.51 * step * std::sqrt(3.0) + 1e-6);
+    }
+  }
+}
+
+TEST_CASE("levels share one grid: a vertex of two levels is at one place") {
+  AssetOptions options;
+  options.draco_position_bits = 10;
+  const Asset asset = decoded(encoded(sphere_levels(), options));
+  // A subdivided icosphere keeps the vertices of the coarser one.
+  CHECK(farthest_vertex(asset.levels[2].mesh, asset.levels[0].mesh) == 0);
+}
+
+TEST_CASE("attributes and materials survive, plain exactly, draco in number") {
+  for (const TriangleSoup& soup : {seam_cube(3), seam_sphere(8, 6), two_material_grid(4)}) {
+    std::vector<AssetLevel> levels(1);
+    levels[0].mesh = mesh_of(soup);
+    for (const bool draco : {false, true}) {
+      AssetOptions options;
+      options.draco = draco;
+      const Asset asset = decoded(encoded(levels, options));
+      const Mesh& mesh = asset.levels.at(0).mesh;
+      CHECK(mesh.face_count() == levels[0].mesh.face_count());
+      CHECK(mesh.wedge_count() == levels[0].mesh.wedge_count());
+      CHECK(mesh.attributes.size() == levels[0].mesh.attributes.size());
+      CHECK(std::set<Index>(mesh.face_material.begin(), mesh.face_material.end()).size() ==
+            std::set<Index>(levels[0].mesh.face_material.begin(), levels[0].mesh.face_material.end()).size());
+    }
+  }
+}
+
+TEST_CASE("integer attributes pass draco exactly") {
+  std::vector<AssetLevel> levels(1);
+  TriangleSoup soup = grid(4, 0.1, 1);
+  Attribute color{"COLOR_0", ComponentType::UInt8, 4, true, {}};
+  Attribute joints{"JOINTS_0", ComponentType::UInt16, 4, false, {}};
+  for (std::size_t i = 0; i < soup.positions.size(); ++i) {
+    for (int k = 0; k < 4; ++k) color.data.push_back(static_cast<std::byte>(i * 7 + static_cast<std::size_t>(k)));
+    for (int k = 0; k < 8; ++k) joints.data.push_back(static_cast<std::byte>(k % 2 == 0 ? i : 1));
+  }
+  soup.attributes = {color, joints};
+  levels[0].mesh = mesh_of(soup);
+  const Asset asset = decoded(encoded(levels, {}));
+  TriangleSoup original = to_soup(levels[0].mesh), read = to_soup(asset.levels.at(0).mesh);
+  const auto values = [](const TriangleSoup& s, std::size_t a) {
+    std::multiset<std::vector<std::byte>> all;
+    const std::size_t size = s.attributes.at(a).element_bytes();
+    for (std::size_t i = 0; i < s.attributes[a].data.size(); i += size)
+      all.insert({s.attributes[a].data.begin() + static_cast<std::ptrdiff_t>(i),
+                  s.attributes[a].data.begin() + static_cast<std::ptrdiff_t>(i + size)});
+    return all;
+  };
+  for (std::size_t a = 0; a < 2; ++a) CHECK(values(original, a) == values(read, a));
+}
+
+TEST_CASE("the binary chunk holds the coarsest level first, each in one piece, and the stream last") {
+  for (const bool draco : {false, true}) {
+    AssetOptions options;
+    options.draco = draco;
+    const EncodedAsset asset = encoded(sphere_levels(), options, 1000);
+    const auto& levels = asset.layout.levels;
+    REQUIRE(levels.size() == 3);
+    CHECK(levels[2].byte_offset == 0);
+    for (std::size_t i = 2; i-- > 0;) {
+      const std::uint64_t end = levels[i + 1].byte_offset + levels[i + 1].byte_length;
+      CHECK(levels[i].byte_offset >= end);
+      CHECK(levels[i].byte_offset < end + 4);
+    }
+    CHECK(asset.layout.stream_bytes == 1000);
+    CHECK(asset.glb.back() == std::byte{7});
+    CHECK(asset.layout.total_bytes == asset.glb.size());
+  }
+}
+
+TEST_CASE("the document follows MSFT_lod") {
+  const std::string json = json_of(encoded(sphere_levels(), {}, 10));
+  CHECK_THAT(json, contains(R"("MSFT_lod":{"ids":[2,3]})") && contains("MSFT_screencoverage") &&
+                       contains(R"("extensionsRequired":["KHR_draco_mesh_compression"])") &&
+                       contains(R"("generator":"lodestone 0.1.0")") && contains(R"("LODESTONE_removal_stream":{"bufferView")"));
+  const Asset asset = decoded(encoded(sphere_levels(), {}));
+  CHECK(asset.levels[0].screen_coverage >= asset.levels[1].screen_coverage);
+  CHECK(asset.levels[2].screen_coverage == 0);
+}
+
+TEST_CASE("readers without levels of detail see the finest level") {
+  const ScratchDirectory scratch;
+  const auto levels = sphere_levels();
+  REQUIRE(write_file(scratch / "asset.glb", encoded(levels, {}).glb));
+  const auto file = read_mesh(scratch / "asset.glb");
+  REQUIRE(file);
+  CHECK(file->mesh.face_count() == levels[0].mesh.face_count());
+}
+
+TEST_CASE("assets are the same bytes every time") {
+  for (const bool draco : {false, true}) {
+    AssetOptions options;
+    options.draco = draco;
+    CHECK(encoded(sphere_levels(), options, 5).glb == encoded(sphere_levels(), options, 5).glb);
+  }
+}
+
+TEST_CASE("levels without faces have no mesh and are no error") {
+  std::vector<AssetLevel> levels(2);
+  levels[0].mesh = mesh_of(tetrahedron());
+  for (const bool draco : {false, true}) {
+    AssetOptions options;
+    options.draco = draco;
+    Asset asset = decoded(encoded(levels, options, 3));
+    REQUIRE(asset.levels.size() == 2);
+    CHECK(asset.levels[0].mesh.face_count() == 4);
+    CHECK(asset.levels[1].mesh.face_count() == 0);
+    CHECK(decoded(encoded(std::span(levels).subspan(1), options)).levels[0].mesh.face_count() == 0);
+  }
+}
+
+TEST_CASE("an ordinary gltf is an asset of one level, without a stream") {
+  const ScratchDirectory scratch;
+  AssetOptions options;
+  options.draco = false;
+  REQUIRE(write_file(scratch / "one.glb", encoded(std::span(sphere_levels()).first(1), options).glb));
+  const auto asset = read_asset(scratch / "one.glb");
+  REQUIRE(asset);
+  CHECK(asset->levels.size() == 1);
+  CHECK(asset->stream.empty());
+  const auto stream = read_asset_stream(scratch / "one.glb");
+  REQUIRE_FALSE(stream);
+  CHECK(stream.error().code == ErrorCode::Unsupported);
+  CHECK_THAT(stream.error().message, contains("one.glb") && contains("no removal stream"));
+}
+
+TEST_CASE("options out of range are named") {
+  AssetOptions options;
+  options.draco_position_bits = 31;
+  const auto asset = encode_asset(sphere_levels(), {}, options);
+  REQUIRE_FALSE(asset);
+  CHECK(asset.error().code == ErrorCode::InvalidArgument);
+  CHECK_THAT(asset.error().message, contains("draco_position_bits is 31"));
+  CHECK_FALSE(encode_asset({}, {}, {}));
+}
+
+TEST_CASE("every truncation of an asset is an error") {
+  const EncodedAsset asset = encoded(std::span(sphere_levels()).subspan(2), {}, 3);
+  for (std::size_t size = 0; size < asset.glb.size(); ++size)
+    CHECK_FALSE(read_asset_bytes(std::span(asset.glb).first(size)));
+}
+
+}  // namespace lodestone::test

@@ -1,0 +1,207 @@
+#include <lodestone/io/stream_format.h>
+
+#include <cstring>
+#include <string>
+
+#include <lodestone/io/read_mesh.h>
+#include <lodestone/lod/cursor.h>
+#include <lodestone/lod/simplify.h>
+
+#include "support/data.h"
+#include "support/mesh_properties.h"
+
+namespace lodestone::test {
+namespace {
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool same_groups(const ProgressiveMesh& a, const ProgressiveMesh& b) {
+  return std::equal(a.groups.begin(), a.groups.end(), b.groups.begin(), b.groups.end(), [](const auto& x, const auto& y) {
+    return x.material == y.material && x.face_count == y.face_count && x.base_corners == y.base_corners;
+  });
+}
+
+bool same_attributes(const ProgressiveMesh& a, const ProgressiveMesh& b) {
+  return std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
+                    [](const Attribute& x, const Attribute& y) {
+                      return x.name == y.name && x.type == y.type && x.component_count == y.component_count &&
+                             x.normalized == y.normalized && x.data == y.data;
+                    });
+}
+
+bool same(const ProgressiveMesh& a, const ProgressiveMesh& b) {
+  return same_bytes(a.positions, b.positions) && a.wedge_vertex == b.wedge_vertex && same_attributes(a, b) &&
+         same_groups(a, b) && a.base_vertex_count == b.base_vertex_count && a.base_wedge_count == b.base_wedge_count &&
+         a.record_wedge_begin == b.record_wedge_begin && a.sector_begin == b.sector_begin &&
+         same_bytes(a.sectors, b.sectors) && a.polygon_begin == b.polygon_begin && a.polygons == b.polygons &&
+         a.slots == b.slots && a.triangles == b.triangles && a.round_begin == b.round_begin &&
+         same_bytes(a.deviation, b.deviation) && same_bytes(a.curvature_error, b.curvature_error);
+}
+
+ProgressiveMesh progressive(const TriangleSoup& soup) {
+  auto result = simplify(mesh_of(soup));
+  REQUIRE(result);
+  return std::move(result->mesh);
+}
+
+std::vector<std::byte> encoded(const ProgressiveMesh& mesh, std::size_t records_per_chunk = 4096) {
+  StreamOptions options;
+  options.records_per_chunk = records_per_chunk;
+  auto bytes = encode_stream(mesh, options);
+  INFO((bytes ? std::string() : bytes.error().message));
+  REQUIRE(bytes);
+  return std::move(*bytes);
+}
+
+ProgressiveMesh decoded(std::span<const std::byte> bytes) {
+  auto mesh = decode_stream(bytes);
+  INFO((mesh ? std::string() : mesh.error().message));
+  REQUIRE(mesh);
+  return std::move(*mesh);
+}
+
+}  // namespace
+
+TEST_CASE("a stream decodes to the progressive mesh it was made of, bit for bit") {
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const ProgressiveMesh mesh = progressive(shape.soup);
+    for (const std::size_t records_per_chunk : {1u, 100u, 1u << 30})
+      CHECK(same(decoded(encoded(mesh, records_per_chunk)), mesh));
+  }
+}
+
+TEST_CASE("models decode bit for bit, too") {
+  for (const char* path : {"mesh/spot/spot_triangulated.obj", "gltf/chr_knight.glb", "mesh/cow.obj"}) {
+    const auto found = model(path);
+    if (!found || kReduced) continue;
+    INFO(path);
+    const auto file = read_mesh(*found);
+    REQUIRE(file);
+    auto result = simplify(file->mesh);
+    REQUIRE(result);
+    CHECK(same(decoded(encoded(result->mesh)), result->mesh));
+  }
+}
+
+TEST_CASE("attributes of every type survive") {
+  TriangleSoup soup = icosphere(2, 0.1, 3);
+  std::uint8_t value = 0;
+  for (const ComponentType type : {ComponentType::Int8, ComponentType::UInt8, ComponentType::Int16, ComponentType::UInt16,
+                                   ComponentType::UInt32, ComponentType::Float32}) {
+    Attribute attribute{"_A" + std::to_string(static_cast<int>(type)), type, 3, false, {}};
+    for (std::size_t i = 0; i < soup.positions.size() * attribute.element_bytes(); ++i)
+      attribute.data.push_back(static_cast<std::byte>(value = static_cast<std::uint8_t>(value * 5 + 17)));
+    soup.attributes.push_back(std::move(attribute));
+  }
+  const ProgressiveMesh mesh = progressive(soup);
+  CHECK(same(decoded(encoded(mesh)), mesh));
+}
+
+TEST_CASE("the directory covers the stream and its levels") {
+  const ProgressiveMesh mesh = progressive(icosphere(3, 0.05, 1));
+  const auto bytes = encoded(mesh, 50);
+  const auto directory = read_stream_directory(bytes);
+  REQUIRE(directory);
+  CHECK(directory->version_major == 1);
+  CHECK(directory->total_bytes == bytes.size());
+  REQUIRE(directory->chunks.size() > 3);
+  const std::vector<Index> faces = face_counts(mesh);
+  std::uint64_t offset = directory->chunks[0].byte_offset;
+  Index record = 0;
+  for (const StreamChunk& chunk : directory->chunks) {
+    CHECK(chunk.byte_offset == offset);
+    CHECK(chunk.record_begin == record);
+    offset += chunk.byte_length;
+    record += chunk.record_count;
+    CHECK(chunk.face_count == faces[record]);
+    CHECK(chunk.vertex_count == mesh.base_vertex_count + record);
+    CHECK(chunk.deviation == mesh.deviation[record]);
+    CHECK(chunk.curvature_error == mesh.curvature_error[record]);
+    // A chunk ends where a round does.
+    CHECK(std::binary_search(mesh.round_begin.begin(), mesh.round_begin.end(), record));
+  }
+  CHECK(offset == bytes.size());
+  CHECK(record == mesh.record_count());
+  // It needs no more than its own bytes.
+  CHECK(read_stream_directory(std::span(bytes).first(directory->chunks[0].byte_offset)));
+}
+
+TEST_CASE("a prefix of whole chunks is the level it leads to") {
+  const ProgressiveMesh mesh = progressive(seam_sphere(16, 12));
+  const auto bytes = encoded(mesh, 20);
+  const auto directory = read_stream_directory(bytes);
+  REQUIRE(directory);
+  for (const StreamChunk& chunk : directory->chunks) {
+    const ProgressiveMesh prefix = decoded(std::span(bytes).first(chunk.byte_offset + chunk.byte_length));
+    CHECK(prefix.record_count() == chunk.record_begin + chunk.record_count);
+    CHECK(prefix.deviation.back() == chunk.deviation);
+    Cursor whole(mesh), part(prefix);
+    whole.seek(static_cast<Index>(prefix.record_count()));
+    part.seek(static_cast<Index>(prefix.record_count()));
+    CHECK(triangle_set(extract_level(mesh, whole)) == triangle_set(extract_level(prefix, part)));
+    CHECK(part.face_count() == chunk.face_count);
+  }
+}
+
+TEST_CASE("every other truncation is an error that says where") {
+  const auto bytes = encoded(progressive(seam_cube(3)), 10);
+  const auto directory = read_stream_directory(bytes);
+  REQUIRE(directory);
+  std::set<std::size_t> chunk_ends;
+  for (const StreamChunk& chunk : directory->chunks) chunk_ends.insert(chunk.byte_offset + chunk.byte_length);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const auto mesh = decode_stream(std::span(bytes).first(size));
+    CHECK(mesh.has_value() == chunk_ends.contains(size));
+    if (!mesh) CHECK(mesh.error().byte_offset.has_value());
+  }
+  std::vector<std::byte> longer = bytes;
+  longer.push_back(std::byte{0});
+  const auto mesh = decode_stream(longer);
+  REQUIRE_FALSE(mesh);
+  CHECK_THAT(mesh.error().message, contains("1 bytes follow its end"));
+}
+
+TEST_CASE("every flipped bit is an error") {
+  const auto bytes = encoded(progressive(seam_cube(2)), 10);
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::vector<std::byte> broken = bytes;
+      broken[i] ^= static_cast<std::byte>(1 << bit);
+      const auto mesh = decode_stream(broken);
+      REQUIRE_FALSE(mesh);
+      CHECK_FALSE(mesh.error().message.empty());
+    }
+}
+
+TEST_CASE("a newer major version is unsupported, by its number") {
+  auto bytes = encoded(progressive(tetrahedron()));
+  bytes[8] = std::byte{2};
+  const auto mesh = decode_stream(bytes);
+  REQUIRE_FALSE(mesh);
+  CHECK(mesh.error().code == ErrorCode::Unsupported);
+  CHECK_THAT(mesh.error().message, contains("version 2.0"));
+}
+
+TEST_CASE("invalid meshes and options are refused") {
+  ProgressiveMesh mesh = progressive(icosphere(2, 0.1, 1));
+  REQUIRE(mesh.record_count() > 0);
+  StreamOptions options;
+  options.zstd_level = 20;
+  CHECK_FALSE(encode_stream(mesh, options));
+  std::swap(mesh.polygons[0], mesh.polygons[1]);
+  const auto bytes = encode_stream(mesh);
+  REQUIRE_FALSE(bytes);
+  CHECK_THAT(bytes.error().message, contains("record 0"));
+}
+
+TEST_CASE("regular meshes compress no further than a decoder may believe") {
+  // Heights, deviations and rings of a flat grid are all alike.
+  const ProgressiveMesh mesh = progressive(grid(kReduced ? 30 : 120, 0, 1));
+  CHECK(same(decoded(encoded(mesh)), mesh));
+}
+
+}  // namespace lodestone::test
