@@ -9,24 +9,41 @@
 namespace lodestone::detail {
 
 /// Points relative to a common origin, one array for each coordinate, so that distances vectorise.
-struct PointBatch {
-  std::vector<float> x, y, z;
+///
+/// The arrays are padded with copies of the last point to whole vectors; `size` counts the points without them.
+class PointBatch {
+ public:
+  static constexpr std::size_t kLanes = 8;
 
-  std::size_t size() const { return x.size(); }
-  void clear() {
-    x.clear();
-    y.clear();
-    z.clear();
-  }
+  std::size_t size() const { return size_; }
+  /// The length of the arrays: size() rounded up to whole vectors.
+  std::size_t padded_size() const { return (size_ + kLanes - 1) / kLanes * kLanes; }
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
+  const float* z() const { return z_.data(); }
+
+  void clear() { size_ = 0; }
   void add(const Vec3& p) {
-    x.push_back(static_cast<float>(p.x));
-    y.push_back(static_cast<float>(p.y));
-    z.push_back(static_cast<float>(p.z));
+    if (size_ % kLanes == 0) grow();
+    for (std::size_t i = size_; i % kLanes != 0 || i == size_; ++i) {
+      x_[i] = static_cast<float>(p.x);
+      y_[i] = static_cast<float>(p.y);
+      z_[i] = static_cast<float>(p.z);
+    }
+    ++size_;
   }
+
+ private:
+  void grow() {
+    if (x_.size() >= size_ + kLanes) return;
+    for (std::vector<float>* v : {&x_, &y_, &z_}) v->resize(size_ + kLanes);
+  }
+  std::size_t size_ = 0;
+  std::vector<float> x_, y_, z_;
 };
 
-/// Writes the squared distance of each point to a triangle; `out` has points.size() entries. Single precision: the
-/// points' origin should lie near.
+/// Writes the squared distance of each point to a triangle; `out` has points.padded_size() entries. Single precision:
+/// the points' origin should lie near.
 void squared_distances(const PointBatch& points, const std::array<Vec3, 3>& triangle, float* out);
 
 /// Returns the squared distance of a point to a segment.

@@ -309,7 +309,7 @@ void RemovalEvaluator::gather_points(const Sector& sector) {
 }
 
 void RemovalEvaluator::measure_distances(const Sector& sector, PolygonTriangle t, Triangle& entry) {
-  entry.squared_distance.resize(points_.size());
+  entry.squared_distance.resize(points_.padded_size());
   squared_distances(points_,
                     {position(sector, t.a) - center_, position(sector, t.b) - center_, position(sector, t.c) - center_},
                     entry.squared_distance.data());
@@ -409,7 +409,7 @@ double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
         points_.add((position(sector, from) + position(sector, to)) * 0.5 - center_);
   }
   nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
-  distance_.resize(points_.size());
+  distance_.resize(points_.padded_size());
   for (std::size_t i = 0; i < sector.patch->face_count(); ++i) {
     squared_distances(points_, {Vec3{}, position(sector, i) - center_, position(sector, i + 1) - center_},
                       distance_.data());

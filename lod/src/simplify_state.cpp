@@ -34,7 +34,7 @@ std::vector<Index> nearest_heirs(const SimplifyState& state, const std::vector<I
                                  const std::vector<Index>& faces, const Vec3& origin) {
   PointBatch batch;
   for (const Index p : taken) batch.add(state.points.position(p) - origin);
-  std::vector<float> distance(taken.size());
+  std::vector<float> distance(batch.padded_size());
   std::vector<float> nearest(taken.size(), std::numeric_limits<float>::infinity());
   std::vector<Index> heir(taken.size(), kNoIndex);
   for (const Index face : faces) {
