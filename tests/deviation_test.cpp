@@ -261,14 +261,68 @@ TEST_CASE("parallel planes and concentric spheres deviate as computed by hand") 
   CHECK(near(spheres.backward.maximum, 0.5, 0.01));
   CHECK(near(spheres.forward.mean, 0.5, 0.02));
 
-  // A unit square against its half: the far edge is 0.5 away, the mean over the square 0.125, and the rms √(1/24).
+  // A unit square against its half: the far edge is 0.5 away, the mean over the square 0.125, and the rms √(1/24); the
+  // edges weigh 2 % and are a third farther away.
   const Mesh square = raw_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 3});
   const Mesh half = raw_mesh({{0, 0, 0}, {0.5F, 0, 0}, {0.5F, 1, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 3});
   const Deviation halved = measure_deviation(square, half);
   CHECK(near(halved.forward.maximum, 0.5, 1e-6));
-  CHECK(near(halved.forward.mean, 0.125, 0.002));
-  CHECK(near(halved.forward.rms, std::sqrt(1.0 / 24), 0.002));
+  CHECK(near(halved.forward.mean, 0.125, 0.01));
+  CHECK(near(halved.forward.rms, std::sqrt(1.0 / 24), 0.01));
   CHECK(halved.backward.maximum_bound < 1e-6);
+}
+
+TEST_CASE("mean and rms are over vertices, edges and faces as Metro counts them") {
+  // A square in two faces that is in the other surface, and one as large, finely meshed, that is 0.5 above it.
+  const Index n = 100;
+  std::vector<Vec3f> positions = {{2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {2, 1, 0}};
+  std::vector<Index> corners = {0, 1, 2, 0, 2, 3};
+  for (Index y = 0; y <= n; ++y) {
+    for (Index x = 0; x <= n; ++x) {
+      if (x < n && y < n) {
+        const Index v = static_cast<Index>(positions.size());
+        corners.insert(corners.end(), {v, v + 1, v + n + 2, v, v + n + 2, v + n + 1});
+      }
+      positions.push_back({static_cast<float>(x) / n, static_cast<float>(y) / n, 0.5F});
+    }
+  }
+  positions.push_back({9, 9, 9});  // No face uses it, so that it is not a part of the surface.
+  const Mesh mesh = raw_mesh(positions, corners);
+  const Mesh plane = raw_mesh({{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {0, 1, 2});
+
+  const double count = 10.0 * (2 * n * n + 2);
+  const double fine_vertices = (n + 1.0) * (n + 1.0);
+  const double rest = count - fine_vertices - 4;
+  const double per_length = std::sqrt(rest / 2);
+  const double fine_edges = per_length * (2 * (n + 1) + n * std::sqrt(2.0));
+  const double coarse_edges = per_length * (4 + std::sqrt(2.0));
+  const double fine_share = (fine_vertices + fine_edges + (rest - fine_edges - coarse_edges) / 2) / count;
+  CHECK(fine_share > 0.7);  // Half by area.
+  for (const std::size_t taken : {1000, 200'000, 400'000}) {
+    DeviationOptions options;
+    options.sample_count = taken;
+    const Deviation found = measure_deviation(mesh, plane, options);
+    const double tolerance = taken < 10'000 ? 0.01 : 0.0005;
+    CHECK(near(found.forward.mean, 0.5 * fine_share, tolerance));
+    CHECK(near(found.forward.rms, 0.5 * std::sqrt(fine_share), tolerance));
+    CHECK(near(found.mean_normal_angle, 0, 0, 1e-9));
+    CHECK(near(static_cast<double>(found.forward.sample_count), static_cast<double>(taken), 0.06));
+  }
+}
+
+TEST_CASE("the normal angle is over the area alone, even where Metro would take no samples in faces") {
+  // A fan of slivers in the plane, and a face as large that stands upright: half of the area is at a right angle.
+  const Index n = 2000;
+  std::vector<Vec3f> positions = {{0, 0, 0}};
+  std::vector<Index> corners;
+  for (Index i = 0; i <= n; ++i) positions.push_back({1, static_cast<float>(i) / n, 0});
+  for (Index i = 1; i <= n; ++i) corners.insert(corners.end(), {0, i, i + 1});
+  const Index first = static_cast<Index>(positions.size());
+  positions.insert(positions.end(), {{0, -1, 0}, {1, -1, 0}, {1, -1, 1}});
+  corners.insert(corners.end(), {first, first + 1, first + 2});
+  const Mesh plane = raw_mesh({{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {0, 1, 2});
+  const Deviation found = measure_deviation(raw_mesh(positions, corners), plane);
+  CHECK(near(found.mean_normal_angle, std::acos(0.0) / 2, 0.001));
 }
 
 TEST_CASE("a flat sheet costs few queries however its triangles lie") {
@@ -412,12 +466,9 @@ TEST_CASE("mean, rms and maximum agree with Metro") {
     REQUIRE(a);
     REQUIRE(b);
     const Deviation found = measure_deviation(read_mesh(*a).value().mesh, read_mesh(*b).value().mesh);
-    // Metro counts as many samples at vertices and on edges as in faces, so that finely meshed parts weigh more than
-    // their area. The cow's details do: its rms over the area is 14 % lower. The others are within 6 %.
-    const double tolerance = original == "mesh/cow.obj" ? 0.15 : 0.1;
     const auto check_agrees = [&](const OneSidedDeviation& ours, const OneSidedDeviation& metros) {
-      CHECK(near(ours.mean, metros.mean, tolerance));
-      CHECK(near(ours.rms, metros.rms, tolerance));
+      CHECK(near(ours.mean, metros.mean, 0.1));
+      CHECK(near(ours.rms, metros.rms, 0.1));
       CHECK(ours.maximum_bound >= metros.maximum * (1 - 1e-5));
       CHECK(ours.maximum >= metros.maximum * 0.98);
       CHECK(ours.maximum_bound <= ours.maximum * 1.0011);

@@ -206,7 +206,8 @@ TEST_CASE("an ordinary gltf is an asset of one level, without a stream") {
   const ScratchDirectory scratch;
   AssetOptions options;
   options.draco = false;
-  REQUIRE(write_file(scratch / "one.glb", encoded(std::span(sphere_levels()).first(1), options).glb));
+  const auto levels = sphere_levels();
+  REQUIRE(write_file(scratch / "one.glb", encoded(std::span(levels).first(1), options).glb));
   const auto asset = read_asset(scratch / "one.glb");
   REQUIRE(asset);
   CHECK(asset->levels.size() == 1);
@@ -228,7 +229,8 @@ TEST_CASE("options out of range are named") {
 }
 
 TEST_CASE("every truncation of an asset is an error") {
-  const EncodedAsset asset = encoded(std::span(sphere_levels()).subspan(2), {}, 3);
+  const auto levels = sphere_levels();
+  const EncodedAsset asset = encoded(std::span(levels).subspan(2), {}, 3);
   for (std::size_t size = 0; size < asset.glb.size(); ++size)
     CHECK_FALSE(read_asset_bytes(std::span(asset.glb).first(size)));
 }

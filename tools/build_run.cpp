@@ -1,7 +1,6 @@
 #include "build_run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <system_error>
@@ -27,6 +26,7 @@ namespace {
 
 constexpr int kDefaultLevelCount = 5;
 constexpr double kDefaultRatio = 0.5;
+constexpr double kMostFacesOfOneRemoval = 2;
 
 Metric metric_of(const std::string& name) {
   if (name == "gaussian") return Metric::Gaussian;
@@ -108,7 +108,6 @@ std::vector<LevelTarget> resolve_all(std::vector<LevelTarget> targets, const Ful
 /// Only face counts can tell early: what a level's errors are is settled when the whole run is known.
 StopCriteria stop_criteria(const BuildCommand& options, std::span<const LevelTarget> targets) {
   StopCriteria stop;
-  constexpr double kMostFacesOfOneRemoval = 2;
   if (!options.no_stream || targets.empty() || targets.back().kind != TargetKind::Faces) return stop;
   stop.min_faces = static_cast<std::size_t>(std::max(0.0, targets.back().value - kMostFacesOfOneRemoval));
   return stop;

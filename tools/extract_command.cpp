@@ -19,8 +19,9 @@
 namespace lodestone::tool {
 namespace {
 
+constexpr std::array kExtensions = {".glb", ".obj", ".ply"};
+
 Result<void> check_paths(const ExtractCommand& options) {
-  constexpr std::array kExtensions = {".glb", ".obj", ".ply"};
   const std::string extension = options.output.extension().string();
   if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end()) {
     return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " does not end in .glb, .obj or .ply");

@@ -22,33 +22,33 @@ namespace lodestone::tool {
 namespace {
 
 /// Part of the program's interface: scripts branch on these.
-enum ExitCode : int {
-  kDone = 0,
-  kUsage = 1,
-  kInputUnreadable = 2,
-  kUnsupported = 3,
-  kNotWritten = 4,
-  kTargetNotMet = 5,
+enum class ExitCode : int {
+  Done = 0,
+  Usage = 1,
+  InputUnreadable = 2,
+  Unsupported = 3,
+  NotWritten = 4,
+  TargetNotMet = 5,
 };
 
-int exit_code(ErrorCode code) {
+ExitCode exit_code(ErrorCode code) {
   switch (code) {
     case ErrorCode::InvalidArgument:
-      return kUsage;
+      return ExitCode::Usage;
     case ErrorCode::Unreadable:
     case ErrorCode::Malformed:
     case ErrorCode::LimitExceeded:
-      return kInputUnreadable;
+      return ExitCode::InputUnreadable;
     case ErrorCode::Unsupported:
-      return kUnsupported;
+      return ExitCode::Unsupported;
     case ErrorCode::NotWritten:
-      return kNotWritten;
+      return ExitCode::NotWritten;
   }
-  return kUsage;
+  return ExitCode::Usage;
 }
 
-int exit_code(const Result<Outcome>& result) {
-  if (result) return *result == Outcome::Done ? kDone : kTargetNotMet;
+ExitCode exit_code(const Result<Outcome>& result) {
+  if (result) return *result == Outcome::Done ? ExitCode::Done : ExitCode::TargetNotMet;
   const Error& error = result.error();
   const std::string where = error.byte_offset ? " (at byte " + std::to_string(*error.byte_offset) + ")" : "";
   print_error(error.message + where);
@@ -72,7 +72,7 @@ class Program {
     add("compare", "Measure how far apart two surfaces are", compare_);
   }
 
-  int run(int argument_count, const char* const* arguments);
+  ExitCode run(int argument_count, const char* const* arguments);
 
  private:
   template <class Command>
@@ -83,7 +83,7 @@ class Program {
   }
 
   void print_usage_error(std::string message) const;
-  int run_command() const;
+  ExitCode run_command() const;
 
   CLI::App app_{"Progressive, multi-LOD assets from triangle meshes", "lodestone"};
   BuildCommand build_;
@@ -93,14 +93,17 @@ class Program {
   std::vector<std::pair<CLI::App*, std::function<Result<Outcome>()>>> commands_;
 };
 
-int Program::run(int argument_count, const char* const* arguments) {
+ExitCode Program::run(int argument_count, const char* const* arguments) {
   try {
     app_.parse(argument_count, arguments);
   } catch (const CLI::ParseError& error) {
     // Help and version are thrown too, with the code 0; only real errors are ours to word.
-    if (error.get_exit_code() == 0) return app_.exit(error);
+    if (error.get_exit_code() == 0) {
+      app_.exit(error);
+      return ExitCode::Done;
+    }
     print_usage_error(error.what());
-    return kUsage;
+    return ExitCode::Usage;
   }
   return run_command();
 }
@@ -112,22 +115,22 @@ void Program::print_usage_error(std::string message) const {
   print_error(message + "; see " + help + " --help");
 }
 
-int Program::run_command() const {
+ExitCode Program::run_command() const {
   for (const auto& [app, run] : commands_) {
     if (app->parsed()) return exit_code(run());
   }
   print_usage_error("no command given");
-  return kUsage;
+  return ExitCode::Usage;
 }
 
 /// Standard output is buffered: a full disk shows only now.
-int finish_output(int code) {
+ExitCode finish_output(ExitCode code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   print_error(std::string("standard output: ") + std::strerror(errno));
-  return code == kDone ? kNotWritten : code;
+  return code == ExitCode::Done ? ExitCode::NotWritten : code;
 }
 
-int guarded_main(int argument_count, const char* const* arguments) {
+ExitCode guarded_main(int argument_count, const char* const* arguments) {
   try {
     Program program;
     return finish_output(program.run(argument_count, arguments));
@@ -136,10 +139,10 @@ int guarded_main(int argument_count, const char* const* arguments) {
   } catch (const std::exception& error) {
     print_error(std::string("internal error: ") + error.what());
   }
-  return kInputUnreadable;
+  return ExitCode::InputUnreadable;
 }
 
 }  // namespace
 }  // namespace lodestone::tool
 
-int main(int argc, char** argv) { return lodestone::tool::guarded_main(argc, argv); }
+int main(int argc, char** argv) { return static_cast<int>(lodestone::tool::guarded_main(argc, argv)); }

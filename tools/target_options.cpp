@@ -11,14 +11,15 @@
 namespace lodestone::tool {
 namespace {
 
+constexpr double kMostFaces = 1e15;  // every whole number up to here is a double
+
 tl::unexpected<Error> fail_option(std::string_view option, const std::string& what) {
   return fail(ErrorCode::InvalidArgument, std::string("--").append(option) + ": " + what);
 }
 
 Result<LevelTarget> parse_faces(std::string_view text) {
   const Result<double> number = parse_number(text);
-  constexpr double kMost = 1e15;  // every whole number up to here is a double
-  if (!number || *number < 1 || *number > kMost || *number != std::floor(*number)) {
+  if (!number || *number < 1 || *number > kMostFaces || *number != std::floor(*number)) {
     return fail_option("faces", quoted(text) + " is not a whole number above 0");
   }
   return LevelTarget{TargetKind::Faces, *number, false};

@@ -221,6 +221,7 @@ class AssetWriter {
   Result<EncodedAsset> write() {
     layout_.levels.resize(levels_.size());
     if (options_.draco) grids_ = fit_grids(levels_, options_);
+    add_materials();
     for (std::size_t i = levels_.size(); i-- > 0;) LODESTONE_CHECK(add_level(i));
     add_stream();
     add_nodes();
@@ -232,6 +233,13 @@ class AssetWriter {
  private:
   std::string level_name(std::size_t level) const {
     return text(options_.name.empty() ? "mesh" : options_.name, "_LOD", level);
+  }
+
+  /// In ascending order of their numbers, which the removal stream's groups refer to.
+  void add_materials() {
+    std::set<Index> numbers;
+    for (const AssetLevel& level : levels_) numbers.insert(level.mesh.face_material.begin(), level.mesh.face_material.end());
+    for (const Index number : numbers) materials_.add(builder_, number);
   }
 
   Result<void> add_level(std::size_t i) {

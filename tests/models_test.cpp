@@ -1,0 +1,53 @@
+// Every readable model, through the stream and back: nothing is lost.
+
+#include <lodestone/io/read_mesh.h>
+#include <lodestone/io/stream_format.h>
+#include <lodestone/lod/cursor.h>
+#include <lodestone/lod/simplify.h>
+
+#include "support/data.h"
+#include "support/mesh_properties.h"
+
+namespace lodestone::test {
+namespace {
+
+constexpr std::size_t kMostFaces = kReduced ? 3000 : 500'000;
+
+void check_recovery(const Mesh& mesh) {
+  SimplifyOptions options;
+  options.measure_step = 0;  // the records are the same; measuring is tested elsewhere
+  const auto result = simplify(mesh, options);
+  REQUIRE(result);
+  const auto bytes = encode_stream(result->mesh);
+  REQUIRE(bytes);
+  const auto decoded = decode_stream(*bytes);
+  INFO((decoded ? "" : decoded.error().message));
+  REQUIRE(decoded);
+  Cursor cursor(*decoded);
+  cursor.seek(static_cast<Index>(decoded->record_count()));
+  CHECK(triangle_set(extract_level(*decoded, cursor)) == triangle_set(mesh));
+}
+
+}  // namespace
+
+TEST_CASE("every readable model comes back from its stream bit for bit, attributes included") {
+  LODESTONE_SKIP_WITHOUT_MODELS();
+  std::size_t readable = 0;
+  for (const auto& path : mesh_files("")) {
+    INFO(path.string());
+    const auto file = read_mesh(path);
+    if (!file || file->mesh.face_count() > kMostFaces) continue;
+    ++readable;
+    check_recovery(file->mesh);
+  }
+  CHECK(readable > 30);
+}
+
+TEST_CASE("the model that comes with the repository comes back from its stream bit for bit") {
+  const auto file = read_mesh(demo_model());
+  REQUIRE(file);
+  REQUIRE(file->mesh.face_count() > 0);
+  if (file->mesh.face_count() <= kMostFaces) check_recovery(file->mesh);
+}
+
+}  // namespace lodestone::test
