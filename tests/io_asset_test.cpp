@@ -165,7 +165,8 @@ TEST_CASE("the document follows MSFT_lod") {
   const std::string json = json_of(encoded(sphere_levels(), {}, 10));
   CHECK_THAT(json, contains(R"("MSFT_lod":{"ids":[2,3]})") && contains("MSFT_screencoverage") &&
                        contains(R"("extensionsRequired":["KHR_draco_mesh_compression"])") &&
-                       contains(R"("generator":"lodestone 0.1.0")") && contains(R"("LODESTONE_removal_stream":{"bufferView")"));
+                       contains(R"("generator":"lodestone 0.1.0")") &&
+                       contains(R"("LODESTONE_removal_stream":{"bufferView")"));
   const Asset asset = decoded(encoded(sphere_levels(), {}));
   CHECK(asset.levels[0].screen_coverage >= asset.levels[1].screen_coverage);
   CHECK(asset.levels[2].screen_coverage == 0);

@@ -279,12 +279,14 @@ TEST_CASE("gltf: buffers may lie beside or below the document, nowhere else") {
       "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
                    {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],
       "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
-      "buffers":[{"byteLength":60,"uri":")" << uri << "\"}]}";
+      "buffers":[{"byteLength":60,"uri":")" << uri
+                                             << "\"}]}";
     return read_mesh(scratch / "folder/x.gltf");
   };
   CHECK(read_with("a%20b.bin"));
   CHECK(read_with("./a b.bin"));
-  for (const char* uri : {"../outside.bin", "%2e%2e/outside.bin", "/etc/passwd", "file:///etc/passwd", "..%5Coutside.bin"}) {
+  for (const char* uri :
+       {"../outside.bin", "%2e%2e/outside.bin", "/etc/passwd", "file:///etc/passwd", "..%5Coutside.bin"}) {
     const auto file = read_with(uri);
     REQUIRE_FALSE(file);
     CHECK(file.error().code == ErrorCode::Unsupported);
@@ -303,7 +305,8 @@ TEST_CASE("gltf: what the mesh does not hold is noted") {
   REQUIRE(file);
   std::string all;
   for (const std::string& note : file->notes) all += note + '\n';
-  CHECK_THAT(all, contains("9 morph targets") && contains("4 skins") && contains("14 animations") && contains("3 materials"));
+  CHECK_THAT(
+      all, contains("9 morph targets") && contains("4 skins") && contains("14 animations") && contains("3 materials"));
 }
 
 }  // namespace lodestone::test

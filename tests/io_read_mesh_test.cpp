@@ -58,7 +58,8 @@ std::string ply(const std::string& format, const std::string& body, const std::s
 
 TEST_CASE("obj: coordinates are the nearest floats") {
   // The first lies just above the middle of two floats: rounded to double on the way, it would go to the even one.
-  const MeshFile file = read("v 1.00000005960464477541 1e-46 -1e-40\nv +2.5 -0 3.4028235e38\nv 0.1 7 .5\nf 1 2 3\n", "obj");
+  const MeshFile file =
+      read("v 1.00000005960464477541 1e-46 -1e-40\nv +2.5 -0 3.4028235e38\nv 0.1 7 .5\nf 1 2 3\n", "obj");
   CHECK(file.mesh.positions[0].x == std::nextafter(1.0F, 2.0F));
   CHECK(file.mesh.positions[0].y == 0);
   CHECK(file.mesh.positions[0].z == -1e-40F);
@@ -76,8 +77,10 @@ TEST_CASE("obj: polygons become fans, relative indices count back, lines may con
 }
 
 TEST_CASE("obj: normals and texture coordinates are attributes, materials are numbered in order of use") {
-  const MeshFile file = read(kTriangle + "v 0 0 1\nvt 0.25 0.75\nvn 0 0 2\nf 1/1/1 2/1/1 3/1/1\nusemtl b\nf 1/1/1 3/1/1 4/1/1\n"
-                             "usemtl a\nf 2/1/1 1/1/1 4/1/1\nusemtl b\nf 3/1/1 2/1/1 4/1/1\n", "obj");
+  const MeshFile file = read(kTriangle +
+                                 "v 0 0 1\nvt 0.25 0.75\nvn 0 0 2\nf 1/1/1 2/1/1 3/1/1\nusemtl b\nf 1/1/1 3/1/1 4/1/1\n"
+                                 "usemtl a\nf 2/1/1 1/1/1 4/1/1\nusemtl b\nf 3/1/1 2/1/1 4/1/1\n",
+                             "obj");
   REQUIRE(file.mesh.attributes.size() == 2);
   float values[3];
   CHECK(file.mesh.attributes[0].name == "NORMAL");
@@ -95,16 +98,14 @@ TEST_CASE("obj: broken statements name their line") {
     const char* source;
     const char* message;
   };
-  for (const Case& c : {Case{"f 1 2 3\n", "line 4: vertex index 3 is out of range"},
-                        Case{"f 1 2 9\n", "line 4: vertex index 9 is out of range: the file has 3"},
-                        Case{"f 1 2 -4\n", "line 4: vertex index -4 is out of range: there are 3 so far"},
-                        Case{"f 0 1 2\n", "line 4: vertex index 0"},
-                        Case{"f 1/7 2/7 3/7\n", "line 4: texture coordinate index 7"},
-                        Case{"f 1//2 2//2 3//2\n", "line 4: normal index 2"},
-                        Case{"f 1 2 x\n", "line 4: 'x' is not a corner"},
-                        Case{"f 1 2 99999999999999999999\n", "line 4: '99999999999999999999' is not a corner"},
-                        Case{"v 1 2\n", "line 4: 2 numbers where 3 are needed"},
-                        Case{"v 1 2 3e\n", "line 4: '3e' is not a number"}}) {
+  for (const Case& c :
+       {Case{"f 1 2 3\n", "line 4: vertex index 3 is out of range"},
+        Case{"f 1 2 9\n", "line 4: vertex index 9 is out of range: the file has 3"},
+        Case{"f 1 2 -4\n", "line 4: vertex index -4 is out of range: there are 3 so far"},
+        Case{"f 0 1 2\n", "line 4: vertex index 0"}, Case{"f 1/7 2/7 3/7\n", "line 4: texture coordinate index 7"},
+        Case{"f 1//2 2//2 3//2\n", "line 4: normal index 2"}, Case{"f 1 2 x\n", "line 4: 'x' is not a corner"},
+        Case{"f 1 2 99999999999999999999\n", "line 4: '99999999999999999999' is not a corner"},
+        Case{"v 1 2\n", "line 4: 2 numbers where 3 are needed"}, Case{"v 1 2 3e\n", "line 4: '3e' is not a number"}}) {
     const bool needs_vertices = std::string(c.message).find("index 3") == std::string::npos;
     const std::string source = (needs_vertices ? kTriangle : std::string("v 0 0 0\n#\n#\n")) + c.source;
     INFO(source);
@@ -134,8 +135,10 @@ TEST_CASE("stl: binary and ASCII, whatever the header says") {
   std::string misleading = binary_stl(2, 2);
   misleading.replace(0, 5, "solid");
   CHECK(read(misleading, "stl").mesh.face_count() == 2);
-  const MeshFile ascii = read("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 1e0 0\n"
-                              "endloop\nendfacet\nendsolid a\n", "stl");
+  const MeshFile ascii = read(
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 1e0 0\n"
+      "endloop\nendfacet\nendsolid a\n",
+      "stl");
   CHECK(ascii.mesh.face_count() == 1);
   CHECK(ascii.mesh.attributes.empty());
   CHECK(read("solid Empty\nendsolid Empty", "stl").mesh.face_count() == 0);
@@ -163,9 +166,12 @@ TEST_CASE("ply: ASCII and binary of both byte orders agree") {
 }
 
 TEST_CASE("ply: normals and colours are attributes") {
-  const std::string properties = "property float nx\nproperty float ny\nproperty float nz\n"
-                                 "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  const Mesh mesh = read(ply("ascii", "0 0 0 0 0 1 255 0 9\n1 0 0 0 0 1 1 2 3\n0 1 0 0 0 1 4 5 6\n3 0 1 2\n", properties), "ply").mesh;
+  const std::string properties =
+      "property float nx\nproperty float ny\nproperty float nz\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const Mesh mesh =
+      read(ply("ascii", "0 0 0 0 0 1 255 0 9\n1 0 0 0 0 1 1 2 3\n0 1 0 0 0 1 4 5 6\n3 0 1 2\n", properties), "ply")
+          .mesh;
   REQUIRE(mesh.attributes.size() == 2);
   CHECK(mesh.attributes[1].name == "COLOR_0");
   CHECK(mesh.attributes[1].type == ComponentType::UInt8);
@@ -175,10 +181,12 @@ TEST_CASE("ply: normals and colours are attributes") {
 
 TEST_CASE("ply: broken files name what is broken") {
   CHECK_THAT(failure(ply("ascii", "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "ply").message, contains("vertex index 3"));
-  CHECK_THAT(failure(ply("ascii", "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "ply").message, contains("face 0: vertex index -1"));
+  CHECK_THAT(failure(ply("ascii", "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "ply").message,
+             contains("face 0: vertex index -1"));
   CHECK_THAT(failure(ply("ascii", "0 0 0\n1 0 0\n"), "ply").message, contains("element vertex"));
-  CHECK_THAT(failure("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n0\n", "ply").message,
-             contains("count 4000000000 exceeds"));
+  CHECK_THAT(
+      failure("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n0\n", "ply").message,
+      contains("count 4000000000 exceeds"));
   CHECK_THAT(failure("ply\nformat ascii 1.0\n", "ply").message, contains("header does not end"));
   CHECK_THAT(failure("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n", "ply").message,
              contains("unknown type 'quad'"));
@@ -207,9 +215,10 @@ TEST_CASE("models have the faces they are known for") {
     const char* path;
     std::size_t faces;
   };
-  for (const Known& known : {Known{"paper/fandisk.obj", 12946}, Known{"mesh/torus.STL", 8700}, Known{"mesh/beast.obj", 64618},
-                             Known{"gltf/FlightHelmet/FlightHelmet.gltf", 94722}, Known{"gltf/SheenCloth.glb", 115200},
-                             Known{"gltf/DenseSphere.glb", 30720}, Known{"gltf/pmndrs-suzi.glb", 14842}}) {
+  for (const Known& known :
+       {Known{"paper/fandisk.obj", 12946}, Known{"mesh/torus.STL", 8700}, Known{"mesh/beast.obj", 64618},
+        Known{"gltf/FlightHelmet/FlightHelmet.gltf", 94722}, Known{"gltf/SheenCloth.glb", 115200},
+        Known{"gltf/DenseSphere.glb", 30720}, Known{"gltf/pmndrs-suzi.glb", 14842}}) {
     const auto path = model(known.path);
     if (!path) continue;
     INFO(known.path);

@@ -19,9 +19,10 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 bool same_groups(const ProgressiveMesh& a, const ProgressiveMesh& b) {
-  return std::equal(a.groups.begin(), a.groups.end(), b.groups.begin(), b.groups.end(), [](const auto& x, const auto& y) {
-    return x.material == y.material && x.face_count == y.face_count && x.base_corners == y.base_corners;
-  });
+  return std::equal(
+      a.groups.begin(), a.groups.end(), b.groups.begin(), b.groups.end(), [](const auto& x, const auto& y) {
+        return x.material == y.material && x.face_count == y.face_count && x.base_corners == y.base_corners;
+      });
 }
 
 bool same_attributes(const ProgressiveMesh& a, const ProgressiveMesh& b) {
@@ -90,8 +91,8 @@ TEST_CASE("models decode bit for bit, too") {
 TEST_CASE("attributes of every type survive") {
   TriangleSoup soup = icosphere(2, 0.1, 3);
   std::uint8_t value = 0;
-  for (const ComponentType type : {ComponentType::Int8, ComponentType::UInt8, ComponentType::Int16, ComponentType::UInt16,
-                                   ComponentType::UInt32, ComponentType::Float32}) {
+  for (const ComponentType type : {ComponentType::Int8, ComponentType::UInt8, ComponentType::Int16,
+                                   ComponentType::UInt16, ComponentType::UInt32, ComponentType::Float32}) {
     Attribute attribute{"_A" + std::to_string(static_cast<int>(type)), type, 3, false, {}};
     for (std::size_t i = 0; i < soup.positions.size() * attribute.element_bytes(); ++i)
       attribute.data.push_back(static_cast<std::byte>(value = static_cast<std::uint8_t>(value * 5 + 17)));

@@ -51,7 +51,8 @@ Result<void> check_options(const AssetOptions& options) {
 /// Grows a box over values; components of one element lie next to each other.
 class GridFitter {
  public:
-  explicit GridFitter(std::size_t component_count) : low_(component_count, HUGE_VALF), high_(component_count, -HUGE_VALF) {}
+  explicit GridFitter(std::size_t component_count)
+      : low_(component_count, HUGE_VALF), high_(component_count, -HUGE_VALF) {}
 
   void add(std::span<const float> values) {
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -63,8 +64,10 @@ class GridFitter {
   QuantizationGrid grid(int bits) const {
     QuantizationGrid grid{low_, 0, bits};
     for (std::size_t i = 0; i < low_.size(); ++i) {
-      if (low_[i] > high_[i]) grid.origin[i] = 0;  // no values at all
-      else grid.range = std::max(grid.range, high_[i] - low_[i]);
+      if (low_[i] > high_[i])
+        grid.origin[i] = 0;  // no values at all
+      else
+        grid.range = std::max(grid.range, high_[i] - low_[i]);
     }
     if (grid.range == 0) grid.range = 1;
     return grid;
@@ -91,7 +94,8 @@ QuantizationGrids fit_grids(std::span<const AssetLevel> levels, const AssetOptio
     const Mesh& mesh = level.mesh;
     fitters.try_emplace("POSITION", 3).first->second.add(as_floats(std::as_bytes(std::span(mesh.positions))));
     for (const Attribute& a : mesh.attributes)
-      if (a.type == ComponentType::Float32) fitters.try_emplace(a.name, a.component_count).first->second.add(as_floats(a.data));
+      if (a.type == ComponentType::Float32)
+        fitters.try_emplace(a.name, a.component_count).first->second.add(as_floats(a.data));
   }
   QuantizationGrids grids;
   for (const auto& [name, fitter] : fitters) grids[name] = fitter.grid(bits_for(name, options));
@@ -106,9 +110,8 @@ struct WrittenMesh {
 };
 
 Json attribute_accessor(const AccessorData& data) {
-  Json accessor = {{"componentType", static_cast<int>(data.type)},
-                   {"count", data.count},
-                   {"type", gltf_type(data.component_count)}};
+  Json accessor = {
+      {"componentType", static_cast<int>(data.type)}, {"count", data.count}, {"type", gltf_type(data.component_count)}};
   if (data.normalized && data.type != ComponentType::Float32) accessor["normalized"] = true;
   return accessor;
 }
@@ -151,19 +154,20 @@ Result<Json> add_draco_primitive(GlbBuilder& builder, const Mesh& mesh, const Fa
   const AccessorData indices{index_type, 1, false, decoded.indices.size(), {}};
   return Json{{"attributes", std::move(attributes)},
               {"indices", builder.add("accessors", attribute_accessor(indices))},
-              {"extensions", {{"KHR_draco_mesh_compression",
-                               {{"bufferView", builder.add_view(encoded.bytes)}, {"attributes", std::move(ids)}}}}}};
+              {"extensions",
+               {{"KHR_draco_mesh_compression",
+                 {{"bufferView", builder.add_view(encoded.bytes)}, {"attributes", std::move(ids)}}}}}};
 }
 
 Result<WrittenMesh> add_draco_mesh(GlbBuilder& builder, const Mesh& mesh, const std::string& name,
-                                   const QuantizationGrids& grids, const AssetOptions& options, MaterialTable& materials) {
+                                   const QuantizationGrids& grids, const AssetOptions& options,
+                                   const MaterialTable& materials) {
   WrittenMesh written;
   if (mesh.face_count() == 0) return written;
   builder.require_extension("KHR_draco_mesh_compression");
   Json primitives = Json::array();
   for (const FacesOfMaterial& group : split_by_material(mesh)) {
     LODESTONE_TRY(Json primitive, add_draco_primitive(builder, mesh, group, grids, options, written));
-    materials.add(builder, group.material);
     materials.assign(primitive, group.material);
     primitives.push_back(std::move(primitive));
   }
@@ -171,7 +175,8 @@ Result<WrittenMesh> add_draco_mesh(GlbBuilder& builder, const Mesh& mesh, const 
   return written;
 }
 
-WrittenMesh add_uncompressed_mesh(GlbBuilder& builder, const Mesh& mesh, const std::string& name, MaterialTable& materials) {
+WrittenMesh add_uncompressed_mesh(GlbBuilder& builder, const Mesh& mesh, const std::string& name,
+                                  const MaterialTable& materials) {
   const Mesh ordered = in_hardware_order(mesh);
   return {add_plain_mesh(builder, ordered, name, materials), ordered.face_count(), ordered.wedge_count()};
 }
@@ -213,15 +218,25 @@ Json screen_coverage(std::span<const AssetLevel> levels) {
   return coverage;
 }
 
+std::set<Index> material_numbers(std::span<const AssetLevel> levels) {
+  std::set<Index> numbers;
+  for (const AssetLevel& level : levels)
+    numbers.insert(level.mesh.face_material.begin(), level.mesh.face_material.end());
+  return numbers;
+}
+
 class AssetWriter {
  public:
   AssetWriter(std::span<const AssetLevel> levels, std::span<const std::byte> stream, const AssetOptions& options)
-      : levels_(levels), stream_(stream), options_(options), written_(levels.size()) {}
+      : levels_(levels),
+        stream_(stream),
+        options_(options),
+        materials_(builder_, material_numbers(levels)),
+        written_(levels.size()) {}
 
   Result<EncodedAsset> write() {
     layout_.levels.resize(levels_.size());
     if (options_.draco) grids_ = fit_grids(levels_, options_);
-    add_materials();
     for (std::size_t i = levels_.size(); i-- > 0;) LODESTONE_CHECK(add_level(i));
     add_stream();
     add_nodes();
@@ -233,13 +248,6 @@ class AssetWriter {
  private:
   std::string level_name(std::size_t level) const {
     return text(options_.name.empty() ? "mesh" : options_.name, "_LOD", level);
-  }
-
-  /// In ascending order of their numbers, which the removal stream's groups refer to.
-  void add_materials() {
-    std::set<Index> numbers;
-    for (const AssetLevel& level : levels_) numbers.insert(level.mesh.face_material.begin(), level.mesh.face_material.end());
-    for (const Index number : numbers) materials_.add(builder_, number);
   }
 
   Result<void> add_level(std::size_t i) {

@@ -21,7 +21,9 @@ T load(std::span<const std::byte> bytes, std::size_t at) {
   return value;
 }
 
-inline std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t at) { return load<std::uint32_t>(bytes, at); }
+inline std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t at) {
+  return load<std::uint32_t>(bytes, at);
+}
 inline float load_f32(std::span<const std::byte> bytes, std::size_t at) { return load<float>(bytes, at); }
 
 /// Appends a value's bytes.

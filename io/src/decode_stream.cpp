@@ -70,9 +70,11 @@ class StreamDecoder {
     const StreamChunk& entry = start_.directory.chunks[index];
     if (checksum64(bytes) != entry.checksum) return broken("the checksum is wrong");
     LODESTONE_CHECK(index == 0 ? add_base(entry, bytes) : add_records(entry, bytes));
-    const bool as_declared = face_count() == entry.face_count && mesh_.wedge_vertex.size() == start_.wedge_counts[index] &&
-                             std::bit_cast<std::uint32_t>(mesh_.deviation.back()) == std::bit_cast<std::uint32_t>(entry.deviation) &&
-                             std::bit_cast<std::uint32_t>(mesh_.curvature_error.back()) == std::bit_cast<std::uint32_t>(entry.curvature_error);
+    const bool as_declared =
+        face_count() == entry.face_count && mesh_.wedge_vertex.size() == start_.wedge_counts[index] &&
+        std::bit_cast<std::uint32_t>(mesh_.deviation.back()) == std::bit_cast<std::uint32_t>(entry.deviation) &&
+        std::bit_cast<std::uint32_t>(mesh_.curvature_error.back()) ==
+            std::bit_cast<std::uint32_t>(entry.curvature_error);
     return as_declared ? Result<void>{} : broken("its level is not the one the directory announces");
   }
 
@@ -118,7 +120,8 @@ class StreamDecoder {
       for (std::uint32_t i = 0; i < name_bytes; ++i) attribute.name.push_back(static_cast<char>(table.next()));
       const auto type = component_type(table.next());
       const std::uint32_t count = table.next(), normalized = table.next();
-      if (!type || count < 1 || count > 16 || normalized > 1) return broken(text("attribute ", a, " has no known layout"));
+      if (!type || count < 1 || count > 16 || normalized > 1)
+        return broken(text("attribute ", a, " has no known layout"));
       attribute.type = *type;
       attribute.component_count = static_cast<std::uint8_t>(count);
       attribute.normalized = normalized == 1;
@@ -145,7 +148,8 @@ class StreamDecoder {
     std::uint32_t vertex = 0;
     for (const std::uint32_t step : columns[kWedgeVertices].values) {
       vertex += unzigzag(step);
-      if (vertex >= mesh_.base_vertex_count) return broken(text("a wedge names vertex ", vertex, " of ", mesh_.base_vertex_count));
+      if (vertex >= mesh_.base_vertex_count)
+        return broken(text("a wedge names vertex ", vertex, " of ", mesh_.base_vertex_count));
       mesh_.wedge_vertex.push_back(vertex);
     }
     std::array<std::uint32_t, 3> p{};
@@ -173,12 +177,14 @@ class StreamDecoder {
   }
 
   Result<void> read_groups(const Column& table, const Column& corner_steps) {
-    if (table.values.size() != 2 * std::size_t{start_.header.group_count}) return broken("the group table has another length");
+    if (table.values.size() != 2 * std::size_t{start_.header.group_count})
+      return broken("the group table has another length");
     Values steps(corner_steps);
     std::uint32_t last = 0;
     for (std::size_t g = 0; g < table.values.size(); g += 2) {
       FaceGroup group{table.values[g], 0, {}};
-      if (table.values[g + 1] > steps.left() / 3) return broken(text("group ", g / 2, " has more faces than there are"));
+      if (table.values[g + 1] > steps.left() / 3)
+        return broken(text("group ", g / 2, " has more faces than there are"));
       for (std::size_t i = 0; i < 3 * std::size_t{table.values[g + 1]}; ++i) {
         last += unzigzag(steps.next());
         if (last >= mesh_.base_wedge_count) return broken(text("group ", g / 2, " names wedge ", last));
@@ -243,13 +249,15 @@ class StreamDecoder {
     if (sector_count > values[kPolygonSizes].left()) return broken("more sectors than there are");
     for (std::uint32_t s = 0; s < sector_count; ++s) LODESTONE_CHECK(read_sector(wedge_count, values));
     mesh_.sector_begin.push_back(static_cast<Index>(mesh_.sectors.size()));
-    mesh_.wedge_vertex.insert(mesh_.wedge_vertex.end(), wedge_count, static_cast<Index>(mesh_.base_vertex_count + record));
+    mesh_.wedge_vertex.insert(mesh_.wedge_vertex.end(), wedge_count,
+                              static_cast<Index>(mesh_.base_vertex_count + record));
     mesh_.record_wedge_begin.push_back(static_cast<Index>(mesh_.wedge_vertex.size()));
     return {};
   }
 
   Result<void> read_sector(std::uint32_t wedge_count, ChunkValues& values) {
-    const std::uint32_t size = values[kPolygonSizes].next(), group = values[kGroups].next(), centre = values[kCentres].next();
+    const std::uint32_t size = values[kPolygonSizes].next(), group = values[kGroups].next(),
+                        centre = values[kCentres].next();
     const bool closed = (centre & 1) != 0;
     if (size < (closed ? 3u : 2u) || size > kMaxPolygonSize) return broken(text("polygon of ", size, " corners"));
     if (group >= mesh_.groups.size()) return broken(text("group ", group, " of ", mesh_.groups.size()));
@@ -258,10 +266,12 @@ class StreamDecoder {
                              static_cast<std::uint8_t>(closed), static_cast<std::uint8_t>(centre / 2)});
     tracer_.begin(size);
     for (std::uint32_t i = 0; i + 2 < size; ++i) LODESTONE_CHECK(read_slot(group, i == 0, size, values));
-    for (const Index wedge : tracer_.wedges()) mesh_.polygons.push_back(wedge != kNoIndex ? wedge : values[kLooseWedges].next());
+    for (const Index wedge : tracer_.wedges())
+      mesh_.polygons.push_back(wedge != kNoIndex ? wedge : values[kLooseWedges].next());
     mesh_.polygon_begin.push_back(mesh_.polygons.size());
     for (auto i = mesh_.polygons.size() - size; i < mesh_.polygons.size(); ++i)
-      if (mesh_.polygons[i] >= mesh_.wedge_vertex.size()) return broken(text("wedge ", mesh_.polygons[i], " does not exist yet"));
+      if (mesh_.polygons[i] >= mesh_.wedge_vertex.size())
+        return broken(text("wedge ", mesh_.polygons[i], " does not exist yet"));
     return {};
   }
 
@@ -325,7 +335,8 @@ class StreamDecoder {
 Result<ProgressiveMesh> decode_stream(std::span<const std::byte> bytes) {
   LODESTONE_TRY(const StreamStart start, read_stream_start(bytes));
   if (bytes.size() > start.directory.total_bytes)
-    return fail(ErrorCode::Malformed, text("stream: ", bytes.size() - start.directory.total_bytes, " bytes follow its end"),
+    return fail(ErrorCode::Malformed,
+                text("stream: ", bytes.size() - start.directory.total_bytes, " bytes follow its end"),
                 start.directory.total_bytes);
   StreamDecoder decoder(start);
   for (std::size_t i = 0; i < start.directory.chunks.size(); ++i) {
@@ -333,11 +344,12 @@ Result<ProgressiveMesh> decode_stream(std::span<const std::byte> bytes) {
     const std::uint64_t room = bytes.size() - chunk.byte_offset;
     if (room == 0 && i > 0) break;  // a prefix: the level so far is complete
     if (chunk.byte_length > room)
-      return fail(ErrorCode::Malformed, text("stream: ends inside chunk ", i, ": ", room, " of ", chunk.byte_length, " bytes"),
-                  bytes.size());
-    const auto added = decoder.add_chunk(i, bytes.subspan(static_cast<std::size_t>(chunk.byte_offset),
-                                                          static_cast<std::size_t>(chunk.byte_length)));
-    if (!added) return fail(added.error().code, text("stream: chunk ", i, ": ", added.error().message), chunk.byte_offset);
+      return fail(ErrorCode::Malformed,
+                  text("stream: ends inside chunk ", i, ": ", room, " of ", chunk.byte_length, " bytes"), bytes.size());
+    const auto added = decoder.add_chunk(
+        i, bytes.subspan(static_cast<std::size_t>(chunk.byte_offset), static_cast<std::size_t>(chunk.byte_length)));
+    if (!added)
+      return fail(added.error().code, text("stream: chunk ", i, ": ", added.error().message), chunk.byte_offset);
   }
   auto mesh = decoder.finish();
   if (!mesh) mesh.error().message = "stream: " + mesh.error().message;

@@ -104,12 +104,18 @@ bool convert(const draco::PointAttribute& source, std::size_t point_count, Acces
 
 bool convert_to(ComponentType type, const draco::PointAttribute& source, std::size_t point_count, AccessorData& out) {
   switch (type) {
-    case ComponentType::Int8: return convert<std::int8_t>(source, point_count, out);
-    case ComponentType::UInt8: return convert<std::uint8_t>(source, point_count, out);
-    case ComponentType::Int16: return convert<std::int16_t>(source, point_count, out);
-    case ComponentType::UInt16: return convert<std::uint16_t>(source, point_count, out);
-    case ComponentType::UInt32: return convert<std::uint32_t>(source, point_count, out);
-    case ComponentType::Float32: return convert<float>(source, point_count, out);
+    case ComponentType::Int8:
+      return convert<std::int8_t>(source, point_count, out);
+    case ComponentType::UInt8:
+      return convert<std::uint8_t>(source, point_count, out);
+    case ComponentType::Int16:
+      return convert<std::int16_t>(source, point_count, out);
+    case ComponentType::UInt16:
+      return convert<std::uint16_t>(source, point_count, out);
+    case ComponentType::UInt32:
+      return convert<std::uint32_t>(source, point_count, out);
+    case ComponentType::Float32:
+      return convert<float>(source, point_count, out);
   }
   return false;
 }
@@ -119,9 +125,9 @@ Result<AccessorData> copy_attribute(const draco::Mesh& mesh, const DracoRequest&
   if (source == nullptr)
     return fail(ErrorCode::Malformed, text(where, ": Draco attribute ", request.unique_id, " does not exist"));
   if (source->num_components() != request.component_count)
-    return fail(ErrorCode::Malformed, text(where, ": Draco attribute ", request.unique_id, " has ",
-                                           int{source->num_components()}, " components and not ",
-                                           int{request.component_count}));
+    return fail(ErrorCode::Malformed,
+                text(where, ": Draco attribute ", request.unique_id, " has ", int{source->num_components()},
+                     " components and not ", int{request.component_count}));
   AccessorData out{request.type, request.component_count, request.normalized, mesh.num_points(), {}};
   out.bytes.resize(out.count * out.element_bytes());
   if (convert_to(request.type, *source, out.count, out)) return out;

@@ -30,12 +30,18 @@ class Compaction {
 
 draco::DataType draco_type(ComponentType type) {
   switch (type) {
-    case ComponentType::Int8: return draco::DT_INT8;
-    case ComponentType::UInt8: return draco::DT_UINT8;
-    case ComponentType::Int16: return draco::DT_INT16;
-    case ComponentType::UInt16: return draco::DT_UINT16;
-    case ComponentType::UInt32: return draco::DT_UINT32;
-    case ComponentType::Float32: return draco::DT_FLOAT32;
+    case ComponentType::Int8:
+      return draco::DT_INT8;
+    case ComponentType::UInt8:
+      return draco::DT_UINT8;
+    case ComponentType::Int16:
+      return draco::DT_INT16;
+    case ComponentType::UInt16:
+      return draco::DT_UINT16;
+    case ComponentType::UInt32:
+      return draco::DT_UINT32;
+    case ComponentType::Float32:
+      return draco::DT_FLOAT32;
   }
   return draco::DT_INVALID;
 }
@@ -108,8 +114,8 @@ void set_grid(draco::ExpertEncoder& encoder, int id, const QuantizationGrid& gri
 
 }  // namespace
 
-Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> corner_wedge, const QuantizationGrids& grids,
-                                    int compression_level) {
+Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> corner_wedge,
+                                    const QuantizationGrids& grids, int compression_level) {
   try {
     const MeshBuilder builder(mesh, corner_wedge);
     draco::ExpertEncoder encoder(builder.mesh());
@@ -118,8 +124,10 @@ Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> cor
     for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
       if (mesh.attributes[i].type != ComponentType::Float32) continue;
       const QuantizationGrid& grid = grids.at(mesh.attributes[i].name);
-      if (mesh.attributes[i].name == "NORMAL") encoder.SetAttributeQuantization(builder.attribute_ids()[i], grid.bits);
-      else set_grid(encoder, builder.attribute_ids()[i], grid);
+      if (mesh.attributes[i].name == "NORMAL")
+        encoder.SetAttributeQuantization(builder.attribute_ids()[i], grid.bits);
+      else
+        set_grid(encoder, builder.attribute_ids()[i], grid);
     }
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeToBuffer(&buffer);
@@ -129,7 +137,8 @@ Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> cor
     const auto bytes = std::as_bytes(std::span(buffer.data(), buffer.size()));
     primitive.bytes.assign(bytes.begin(), bytes.end());
     primitive.position_id = builder.mesh().attribute(builder.position_id())->unique_id();
-    for (const int id : builder.attribute_ids()) primitive.attribute_ids.push_back(builder.mesh().attribute(id)->unique_id());
+    for (const int id : builder.attribute_ids())
+      primitive.attribute_ids.push_back(builder.mesh().attribute(id)->unique_id());
     return primitive;
   } catch (const std::exception& error) {
     return fail(ErrorCode::InvalidArgument, text("Draco: ", error.what()));

@@ -34,7 +34,7 @@ struct DracoPrimitive {
 
 /// Compresses some faces of a mesh. Float attributes are quantised in their grids, integers are kept exactly.
 /// `compression_level` is 0 to 10. Pre: corner_wedge is not empty. Errors: InvalidArgument with Draco's reason.
-Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> corner_wedge, const QuantizationGrids& grids,
-                                    int compression_level);
+Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> corner_wedge,
+                                    const QuantizationGrids& grids, int compression_level);
 
 }  // namespace lodestone::detail

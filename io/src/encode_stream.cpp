@@ -28,7 +28,8 @@ Result<void> check_limits(const ProgressiveMesh& mesh) {
   for (const Attribute& a : mesh.attributes)
     if (a.name.size() > kMaxNameBytes) return beyond("bytes of an attribute's name", a.name.size(), kMaxNameBytes);
   for (const SectorHeader& sector : mesh.sectors)
-    if (sector.polygon_size > kMaxPolygonSize) return beyond("corners of a polygon", sector.polygon_size, kMaxPolygonSize);
+    if (sector.polygon_size > kMaxPolygonSize)
+      return beyond("corners of a polygon", sector.polygon_size, kMaxPolygonSize);
   for (std::size_t k = 0; k < mesh.record_count(); ++k)
     if (const Index wedges = mesh.record_wedge_begin[k + 1] - mesh.record_wedge_begin[k]; wedges > kMaxWedgesPerRecord)
       return beyond("wedges of a record", wedges, kMaxWedgesPerRecord);
@@ -118,7 +119,8 @@ class RecordEncoder {
   void add_rounds(Index begin, Index end) {
     const auto& rounds = mesh_.round_begin;
     for (std::size_t r = 0; r + 1 < rounds.size(); ++r)
-      if (rounds[r] >= begin && rounds[r + 1] <= end && rounds[r] < rounds[r + 1]) put(kRoundSizes, rounds[r + 1] - rounds[r]);
+      if (rounds[r] >= begin && rounds[r + 1] <= end && rounds[r] < rounds[r + 1])
+        put(kRoundSizes, rounds[r + 1] - rounds[r]);
   }
 
   Result<void> add_connectivity(Index record) {
@@ -130,7 +132,8 @@ class RecordEncoder {
       put(kGroups, sector.group);
       put(kCentres, 2u * sector.wedge + sector.closed);
       if (!add_sector_faces(s))
-        return fail(ErrorCode::InvalidArgument, text("stream: record ", record, ": a polygon differs from the faces it covers"));
+        return fail(ErrorCode::InvalidArgument,
+                    text("stream: record ", record, ": a polygon differs from the faces it covers"));
     }
     return {};
   }
@@ -143,8 +146,10 @@ class RecordEncoder {
     for (std::uint64_t i = mesh_.slot_begin(s); i < mesh_.slot_begin(s + 1); ++i) {
       const Index slot = mesh_.slots[i];
       const std::span<const std::uint8_t, 3> triangle(mesh_.triangles.data() + 3 * i, 3);
-      if (i == mesh_.slot_begin(s)) put(kFirstSlots, slot);
-      else put(kOtherSlots, slot == tracer_.expected_slot(triangle) ? 0 : slot + 1);
+      if (i == mesh_.slot_begin(s))
+        put(kFirstSlots, slot);
+      else
+        put(kOtherSlots, slot == tracer_.expected_slot(triangle) ? 0 : slot + 1);
       for (const std::uint8_t corner : triangle) put(kTriangles, corner);
       const auto face = faces_.face(sector.group, slot);
       int rotation = tracer_.rotation_of(triangle, face);
@@ -155,8 +160,10 @@ class RecordEncoder {
       if (rotation < 0 || rotation > 2 || !tracer_.trace(triangle, faces_, sector.group, slot, rotation)) return false;
     }
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-      if (tracer_.wedges()[i] == kNoIndex) put(kLooseWedges, polygon[i]);
-      else if (tracer_.wedges()[i] != polygon[i]) return false;
+      if (tracer_.wedges()[i] == kNoIndex)
+        put(kLooseWedges, polygon[i]);
+      else if (tracer_.wedges()[i] != polygon[i])
+        return false;
     }
     return true;
   }
@@ -185,7 +192,8 @@ class RecordEncoder {
     for (std::size_t c = 0; c < a.component_count; ++c, ++column)
       for (Index w = first; w < end; ++w) {
         const std::uint32_t value = ordered.load(std::span(a.data).subspan(w * a.element_bytes() + c * size, size));
-        put(column, ordered.residual(value, predict_component(mesh_, record, static_cast<int>(w - first), a, ordered, c)));
+        put(column,
+            ordered.residual(value, predict_component(mesh_, record, static_cast<int>(w - first), a, ordered, c)));
       }
     return column;
   }
@@ -246,7 +254,8 @@ class StreamWriter {
   void fill_header() {
     StreamHeader& h = start_.header;
     auto& chunks = start_.directory.chunks;
-    h.header_bytes = static_cast<std::uint32_t>(kFixedHeaderBytes + kDirectoryEntryBytes * chunks.size() + kHeaderChecksumBytes);
+    h.header_bytes =
+        static_cast<std::uint32_t>(kFixedHeaderBytes + kDirectoryEntryBytes * chunks.size() + kHeaderChecksumBytes);
     h.vertex_count = static_cast<std::uint32_t>(mesh_.vertex_count());
     h.wedge_count = static_cast<std::uint32_t>(mesh_.wedge_vertex.size());
     h.record_count = static_cast<std::uint32_t>(mesh_.record_count());
@@ -270,7 +279,8 @@ class StreamWriter {
 
 Result<std::vector<std::byte>> encode_stream(const ProgressiveMesh& mesh, const StreamOptions& options) {
   if (options.zstd_level < 1 || options.zstd_level > kMaxZstdLevel)
-    return fail(ErrorCode::InvalidArgument, text("zstd_level is ", options.zstd_level, ", not in 1 to ", kMaxZstdLevel));
+    return fail(ErrorCode::InvalidArgument,
+                text("zstd_level is ", options.zstd_level, ", not in 1 to ", kMaxZstdLevel));
   LODESTONE_CHECK(validate(mesh));
   LODESTONE_CHECK(check_limits(mesh));
   return StreamWriter(mesh, options).write();

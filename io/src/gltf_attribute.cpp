@@ -30,12 +30,16 @@ constexpr std::array<Rule, 6> kRules = {{
 
 unsigned type_bit(const Attribute& attribute) {
   switch (attribute.type) {
-    case ComponentType::Float32: return kFloat;
+    case ComponentType::Float32:
+      return kFloat;
     case ComponentType::UInt8:
-    case ComponentType::UInt16: return attribute.normalized ? kUnsignedNormalized : kUnsigned;
+    case ComponentType::UInt16:
+      return attribute.normalized ? kUnsignedNormalized : kUnsigned;
     case ComponentType::Int8:
-    case ComponentType::Int16: return attribute.normalized ? kSignedNormalized : kSigned;
-    case ComponentType::UInt32: return 0;
+    case ComponentType::Int16:
+      return attribute.normalized ? kSignedNormalized : kSigned;
+    case ComponentType::UInt32:
+      return 0;
   }
   return 0;
 }

@@ -37,7 +37,8 @@ Result<GltfContainer> split_glb(std::span<const std::byte> bytes) {
     return fail(ErrorCode::Malformed, text("glb: length ", length, " where the file has ", bytes.size(), " bytes"), 8);
 
   LODESTONE_TRY(const Chunk json, read_chunk(bytes.first(length), kGlbHeaderBytes));
-  if (json.type != kGlbJsonChunk) return fail(ErrorCode::Malformed, "glb: the first chunk is not JSON", kGlbHeaderBytes);
+  if (json.type != kGlbJsonChunk)
+    return fail(ErrorCode::Malformed, "glb: the first chunk is not JSON", kGlbHeaderBytes);
   GltfContainer container{as_text(json.bytes), {}};
   // Chunks begin on multiples of 4; some writers do not count the padding.
   const std::size_t next = (kGlbHeaderBytes + kChunkHeaderBytes + json.bytes.size() + 3) / 4 * 4;
@@ -86,8 +87,8 @@ int hex_value(char c) {
 std::string decode_percent(std::string_view source) {
   std::string out;
   for (std::size_t i = 0; i < source.size(); ++i) {
-    const bool coded = source[i] == '%' && i + 2 < source.size() && hex_value(source[i + 1]) >= 0 &&
-                       hex_value(source[i + 2]) >= 0;
+    const bool coded =
+        source[i] == '%' && i + 2 < source.size() && hex_value(source[i + 1]) >= 0 && hex_value(source[i + 2]) >= 0;
     out += coded ? static_cast<char>(hex_value(source[i + 1]) * 16 + hex_value(source[i + 2])) : source[i];
     if (coded) i += 2;
   }

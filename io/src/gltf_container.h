@@ -12,8 +12,8 @@
 
 namespace lodestone::detail {
 
-inline constexpr std::uint32_t kGlbMagic = 0x46546C67;      // "glTF"
-inline constexpr std::uint32_t kGlbJsonChunk = 0x4E4F534A;  // "JSON"
+inline constexpr std::uint32_t kGlbMagic = 0x46546C67;        // "glTF"
+inline constexpr std::uint32_t kGlbJsonChunk = 0x4E4F534A;    // "JSON"
 inline constexpr std::uint32_t kGlbBinaryChunk = 0x004E4942;  // "BIN\0"
 
 bool is_glb(std::span<const std::byte> bytes);

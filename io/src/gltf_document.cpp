@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t kMaxExpansion = 256;
 constexpr std::size_t kAlwaysAllowedBytes = std::size_t{1} << 20;
 
-constexpr std::array<const char*, 13> kTopLevelArrays = {"accessors", "animations", "buffers",  "bufferViews", "cameras",
-                                                         "images",    "materials",  "meshes",   "nodes",       "samplers",
-                                                         "scenes",    "skins",      "textures"};
+constexpr std::array<const char*, 13> kTopLevelArrays = {
+    "accessors", "animations", "buffers",  "bufferViews", "cameras", "images",  "materials",
+    "meshes",    "nodes",      "samplers", "scenes",      "skins",   "textures"};
 
 /// Checks once that every top-level array is an array of objects, so that `element` may rely on it.
 Result<void> check_shape(const Json& json) {
@@ -32,7 +32,8 @@ Result<void> check_shape(const Json& json) {
     if (array == nullptr) continue;
     if (!array->is_array()) return fail(ErrorCode::Malformed, text("gltf: ", name, " is not an array"));
     for (std::size_t i = 0; i < array->size(); ++i)
-      if (!(*array)[i].is_object()) return fail(ErrorCode::Malformed, text("gltf: ", name, '[', i, "] is not an object"));
+      if (!(*array)[i].is_object())
+        return fail(ErrorCode::Malformed, text("gltf: ", name, '[', i, "] is not an object"));
   }
   return {};
 }
@@ -43,7 +44,8 @@ Result<void> check_version(const Json& json) {
   if (version.empty()) return fail(ErrorCode::Malformed, "gltf: asset.version is missing");
   const std::string least = string_member(*asset, "minVersion");
   if (version.starts_with("2.") && (least.empty() || least == "2.0")) return {};
-  return fail(ErrorCode::Unsupported, text("gltf: version ", least.empty() ? version : least, " is not supported, only 2.0"));
+  return fail(ErrorCode::Unsupported,
+              text("gltf: version ", least.empty() ? version : least, " is not supported, only 2.0"));
 }
 
 const Json* meshopt_extension(const Json& object) {
@@ -60,13 +62,20 @@ bool is_fallback(const Json& buffer) {
 
 std::optional<ComponentType> component_type_of(std::size_t value) {
   switch (value) {
-    case 5120: return ComponentType::Int8;
-    case 5121: return ComponentType::UInt8;
-    case 5122: return ComponentType::Int16;
-    case 5123: return ComponentType::UInt16;
-    case 5125: return ComponentType::UInt32;
-    case 5126: return ComponentType::Float32;
-    default: return std::nullopt;
+    case 5120:
+      return ComponentType::Int8;
+    case 5121:
+      return ComponentType::UInt8;
+    case 5122:
+      return ComponentType::Int16;
+    case 5123:
+      return ComponentType::UInt16;
+    case 5125:
+      return ComponentType::UInt32;
+    case 5126:
+      return ComponentType::Float32;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -95,8 +104,8 @@ Result<AccessorData> read_accessor_type(const Json& accessor, std::string_view w
 }
 
 /// Returns the distance of `count` elements that begin at `offset` of a view, after checking that they lie inside.
-Result<std::size_t> check_range(const BufferView& view, std::size_t offset, std::size_t count, std::size_t element_bytes,
-                                std::string_view where) {
+Result<std::size_t> check_range(const BufferView& view, std::size_t offset, std::size_t count,
+                                std::size_t element_bytes, std::string_view where) {
   const std::size_t stride = view.stride == 0 ? element_bytes : view.stride;
   if (stride < element_bytes)
     return fail(ErrorCode::Malformed, text(where, ": elements of ", element_bytes, " bytes in a stride of ", stride));
@@ -123,7 +132,8 @@ Result<void> gather(const BufferView& view, std::size_t offset, std::size_t coun
 }
 
 /// Replaces the elements that the accessor's `sparse` object lists.
-Result<void> apply_sparse(const GltfDocument& document, const Json& sparse, AccessorData& data, const std::string& where) {
+Result<void> apply_sparse(const GltfDocument& document, const Json& sparse, AccessorData& data,
+                          const std::string& where) {
   LODESTONE_TRY(const std::size_t count, size_member(sparse, "count", where));
   const Json* indices = find_member(sparse, "indices");
   const Json* values = find_member(sparse, "values");
@@ -204,7 +214,8 @@ Result<void> GltfDocument::load_buffers(std::vector<std::byte> binary_chunk, con
       bytes = std::move(*fetched);
     }
     if (bytes.size() < size)
-      return fail(ErrorCode::Malformed, text(where, ": byteLength ", size, " where there are ", bytes.size(), " bytes"));
+      return fail(ErrorCode::Malformed,
+                  text(where, ": byteLength ", size, " where there are ", bytes.size(), " bytes"));
     bytes.resize(size);
     buffers_.push_back(std::move(bytes));
   }
@@ -217,11 +228,12 @@ Result<std::span<const std::byte>> GltfDocument::slice_buffer(const Json& object
   LODESTONE_TRY(const std::size_t offset, size_member_or(object, "byteOffset", 0, where));
   LODESTONE_TRY(const std::size_t size, size_member(object, "byteLength", where));
   if (buffer >= buffers_.size())
-    return fail(ErrorCode::Malformed, text(where, ": buffer ", buffer, " does not exist: the file has ", buffers_.size()));
+    return fail(ErrorCode::Malformed,
+                text(where, ": buffer ", buffer, " does not exist: the file has ", buffers_.size()));
   const std::span<const std::byte> bytes = buffers_[buffer];
   if (offset > bytes.size() || size > bytes.size() - offset)
-    return fail(ErrorCode::Malformed,
-                text(where, ": ", size, " bytes from ", offset, " exceed buffer ", buffer, " of ", bytes.size(), " bytes"));
+    return fail(ErrorCode::Malformed, text(where, ": ", size, " bytes from ", offset, " exceed buffer ", buffer, " of ",
+                                           bytes.size(), " bytes"));
   return bytes.subspan(offset, size);
 }
 
@@ -290,8 +302,10 @@ void convert_to_floats(const AccessorData& data, std::vector<float>& out) {
   const float scale = kInteger && data.normalized ? static_cast<float>(std::numeric_limits<T>::max()) : 1.0f;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const T value = load<T>(data.bytes, i * sizeof(T));
-    if constexpr (!kInteger) out[i] = value;
-    else out[i] = data.normalized ? std::max(static_cast<float>(value) / scale, -1.0f) : static_cast<float>(value);
+    if constexpr (!kInteger)
+      out[i] = value;
+    else
+      out[i] = data.normalized ? std::max(static_cast<float>(value) / scale, -1.0f) : static_cast<float>(value);
   }
 }
 
@@ -305,22 +319,38 @@ void convert_to_indices(const AccessorData& data, std::vector<Index>& out) {
 std::vector<float> to_floats(const AccessorData& data) {
   std::vector<float> out(data.count * data.component_count);
   switch (data.type) {
-    case ComponentType::Int8: convert_to_floats<std::int8_t>(data, out); break;
-    case ComponentType::UInt8: convert_to_floats<std::uint8_t>(data, out); break;
-    case ComponentType::Int16: convert_to_floats<std::int16_t>(data, out); break;
-    case ComponentType::UInt16: convert_to_floats<std::uint16_t>(data, out); break;
-    case ComponentType::UInt32: convert_to_floats<std::uint32_t>(data, out); break;
-    case ComponentType::Float32: convert_to_floats<float>(data, out); break;
+    case ComponentType::Int8:
+      convert_to_floats<std::int8_t>(data, out);
+      break;
+    case ComponentType::UInt8:
+      convert_to_floats<std::uint8_t>(data, out);
+      break;
+    case ComponentType::Int16:
+      convert_to_floats<std::int16_t>(data, out);
+      break;
+    case ComponentType::UInt16:
+      convert_to_floats<std::uint16_t>(data, out);
+      break;
+    case ComponentType::UInt32:
+      convert_to_floats<std::uint32_t>(data, out);
+      break;
+    case ComponentType::Float32:
+      convert_to_floats<float>(data, out);
+      break;
   }
   return out;
 }
 
 Result<std::vector<Index>> to_indices(const AccessorData& data, std::string_view what) {
   std::vector<Index> out(data.count);
-  if (data.component_count == 1 && data.type == ComponentType::UInt8) convert_to_indices<std::uint8_t>(data, out);
-  else if (data.component_count == 1 && data.type == ComponentType::UInt16) convert_to_indices<std::uint16_t>(data, out);
-  else if (data.component_count == 1 && data.type == ComponentType::UInt32) convert_to_indices<std::uint32_t>(data, out);
-  else return fail(ErrorCode::Malformed, text(what, ": indices are not unsigned scalars"));
+  if (data.component_count == 1 && data.type == ComponentType::UInt8)
+    convert_to_indices<std::uint8_t>(data, out);
+  else if (data.component_count == 1 && data.type == ComponentType::UInt16)
+    convert_to_indices<std::uint16_t>(data, out);
+  else if (data.component_count == 1 && data.type == ComponentType::UInt32)
+    convert_to_indices<std::uint32_t>(data, out);
+  else
+    return fail(ErrorCode::Malformed, text(what, ": indices are not unsigned scalars"));
   return out;
 }
 

@@ -20,16 +20,22 @@ namespace {
 constexpr std::size_t kMaxCorners = 300'000'000;
 
 // Extensions that are decoded, and those that have no say in where triangles are.
-constexpr std::array<std::string_view, 9> kKnownExtensions = {
-    "KHR_draco_mesh_compression", "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_meshopt_compression",
-    "MSFT_lod",                   "KHR_lights_punctual",   "KHR_animation_pointer",   "KHR_xmp_json_ld",
-    "LODESTONE_removal_stream"};
+constexpr std::array<std::string_view, 9> kKnownExtensions = {"KHR_draco_mesh_compression",
+                                                              "KHR_mesh_quantization",
+                                                              "EXT_meshopt_compression",
+                                                              "KHR_meshopt_compression",
+                                                              "MSFT_lod",
+                                                              "KHR_lights_punctual",
+                                                              "KHR_animation_pointer",
+                                                              "KHR_xmp_json_ld",
+                                                              "LODESTONE_removal_stream"};
 constexpr std::array<std::string_view, 6> kKnownPrefixes = {"KHR_materials_", "KHR_texture_",  "EXT_texture_",
                                                             "EXT_lights_",    "MSFT_texture_", "MSFT_packing_"};
 
 bool is_known(std::string_view name) {
   return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end() ||
-         std::any_of(kKnownPrefixes.begin(), kKnownPrefixes.end(), [&](auto prefix) { return name.starts_with(prefix); });
+         std::any_of(kKnownPrefixes.begin(), kKnownPrefixes.end(),
+                     [&](auto prefix) { return name.starts_with(prefix); });
 }
 
 using Primitives = std::map<std::size_t, std::vector<Primitive>>;  // by mesh
@@ -64,8 +70,10 @@ CommonAttributes find_common_attributes(const Primitives& meshes, bool has_skins
   CommonAttributes common;
   for (const auto& [name, entry] : seen) {
     if (has_skins && is_skinning(name)) continue;
-    if (entry.second == primitive_count) common.layouts.push_back(entry.first);
-    else common.dropped.insert(name);
+    if (entry.second == primitive_count)
+      common.layouts.push_back(entry.first);
+    else
+      common.dropped.insert(name);
   }
   return common;
 }
@@ -124,7 +132,8 @@ std::string join(const std::set<std::string>& names) {
 std::vector<std::string> note_left_out(const GltfDocument& document, const PrimitiveOmissions& omissions) {
   std::vector<std::string> notes;
   const auto note = [&](std::size_t count, const char* one, const char* many, const char* rest = "") {
-    if (count > 0) notes.push_back(text(count, ' ', count == 1 ? one : many, count == 1 ? " is" : " are", " left out", rest));
+    if (count > 0)
+      notes.push_back(text(count, ' ', count == 1 ? one : many, count == 1 ? " is" : " are", " left out", rest));
   };
   note(omissions.points_and_lines, "primitive of points or lines", "primitives of points or lines");
   note(omissions.morph_targets, "morph target", "morph targets");
@@ -133,8 +142,10 @@ std::vector<std::string> note_left_out(const GltfDocument& document, const Primi
   note(document.count("textures"), "texture", "textures");
   note(document.count("materials"), "material", "materials", "; faces keep apart by material");
   note(document.count("cameras"), "camera", "cameras");
-  if (document.count("meshes") == 0) notes.push_back("the file has no meshes");
-  else if (document.count("nodes") == 0) notes.push_back("the file has no nodes: all its meshes are read as they are stored");
+  if (document.count("meshes") == 0)
+    notes.push_back("the file has no meshes");
+  else if (document.count("nodes") == 0)
+    notes.push_back("the file has no nodes: all its meshes are read as they are stored");
   return notes;
 }
 
@@ -161,7 +172,8 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
   if (std::all_of(materials.begin(), materials.end(), [](Index m) { return m == 0; })) materials.clear();
   file.notes = note_left_out(document, reader.omissions());
   if (!common.dropped.empty())
-    file.notes.push_back(text("attributes that not all primitives have in one layout are left out: ", join(common.dropped)));
+    file.notes.push_back(
+        text("attributes that not all primitives have in one layout are left out: ", join(common.dropped)));
   return file;
 }
 

@@ -63,10 +63,11 @@ std::size_t add_indices(GlbBuilder& builder, std::span<const Index> indices, std
   const std::vector<std::uint16_t> shorts(indices.begin(), narrow ? indices.end() : indices.begin());
   const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
   const std::size_t view = builder.add_view(bytes, ViewTarget::Indices);
-  return builder.add("accessors", {{"bufferView", view},
-                                   {"componentType", static_cast<int>(narrow ? ComponentType::UInt16 : ComponentType::UInt32)},
-                                   {"count", indices.size()},
-                                   {"type", "SCALAR"}});
+  return builder.add("accessors",
+                     {{"bufferView", view},
+                      {"componentType", static_cast<int>(narrow ? ComponentType::UInt16 : ComponentType::UInt32)},
+                      {"count", indices.size()},
+                      {"type", "SCALAR"}});
 }
 
 /// Copies the wedges of `mesh` to their new numbers in `out`; ~0 means that no face uses one.
@@ -102,10 +103,12 @@ std::vector<FacesOfMaterial> split_by_material(const Mesh& mesh) {
   return out;
 }
 
-void MaterialTable::add(GlbBuilder& builder, Index number) {
-  if (number == 0 || index_of_.contains(number)) return;
-  index_of_[number] = builder.add("materials", {{"name", text("material ", number)},
-                                                {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}});
+MaterialTable::MaterialTable(GlbBuilder& builder, const std::set<Index>& numbers) {
+  for (const Index number : numbers)
+    if (number != 0)
+      index_of_[number] =
+          builder.add("materials", {{"name", text("material ", number)},
+                                    {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}});
 }
 
 void MaterialTable::assign(Json& primitive, Index number) const {
@@ -113,13 +116,13 @@ void MaterialTable::assign(Json& primitive, Index number) const {
 }
 
 std::optional<std::size_t> add_plain_mesh(GlbBuilder& builder, const Mesh& mesh, const std::string& name,
-                                          MaterialTable& materials) {
+                                          const MaterialTable& materials) {
   if (mesh.face_count() == 0) return std::nullopt;
   const Json attributes = add_vertices(builder, mesh);
   Json primitives = Json::array();
   for (const FacesOfMaterial& group : split_by_material(mesh)) {
-    Json primitive = {{"attributes", attributes}, {"indices", add_indices(builder, group.corner_wedge, mesh.wedge_count())}};
-    materials.add(builder, group.material);
+    Json primitive = {{"attributes", attributes},
+                      {"indices", add_indices(builder, group.corner_wedge, mesh.wedge_count())}};
     materials.assign(primitive, group.material);
     primitives.push_back(std::move(primitive));
   }
@@ -136,7 +139,8 @@ Mesh in_hardware_order(const Mesh& mesh) {
     std::vector<unsigned> corners(group.corner_wedge.size());
     meshopt_optimizeVertexCache(corners.data(), group.corner_wedge.data(), corners.size(), mesh.wedge_count());
     out.corner_wedge.insert(out.corner_wedge.end(), corners.begin(), corners.end());
-    if (!mesh.face_material.empty()) out.face_material.insert(out.face_material.end(), corners.size() / 3, group.material);
+    if (!mesh.face_material.empty())
+      out.face_material.insert(out.face_material.end(), corners.size() / 3, group.material);
   }
   std::vector<unsigned> new_number(mesh.wedge_count());
   const std::size_t used = meshopt_optimizeVertexFetchRemap(new_number.data(), out.corner_wedge.data(),

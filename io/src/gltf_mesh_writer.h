@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,12 +24,11 @@ struct FacesOfMaterial {
 /// Splits a mesh's faces by material, ascending. Empty for a mesh without faces.
 std::vector<FacesOfMaterial> split_by_material(const Mesh& mesh);
 
-/// The document's materials: a plain one for each number that faces use; 0 stands for none.
+/// The document's materials: a plain one for each number that faces use, in ascending order; 0 stands for none.
 class MaterialTable {
  public:
-  /// Adds the material of a number if it is new.
-  void add(GlbBuilder& builder, Index number);
-  /// Sets the primitive's material. Pre: the number was added, or is 0.
+  MaterialTable(GlbBuilder& builder, const std::set<Index>& numbers);
+  /// Sets the primitive's material. Pre: the number is one of the table's, or 0.
   void assign(Json& primitive, Index number) const;
 
  private:
@@ -38,7 +38,7 @@ class MaterialTable {
 /// Writes a mesh uncompressed: one vertex buffer, one primitive per material. Returns the mesh's index, or nothing for
 /// a mesh without faces, which glTF has no form for.
 std::optional<std::size_t> add_plain_mesh(GlbBuilder& builder, const Mesh& mesh, const std::string& name,
-                                          MaterialTable& materials);
+                                          const MaterialTable& materials);
 
 /// Returns the mesh with faces and wedges in an order that graphics hardware likes: the vertex cache's, then the order
 /// of first use. Faces of one material stay together.

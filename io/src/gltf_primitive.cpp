@@ -36,7 +36,8 @@ Result<std::vector<Vec3f>> to_positions(const AccessorData& data, const std::str
     return fail(ErrorCode::Malformed, text(where, ": POSITION has ", int{data.component_count}, " components"));
   const std::vector<float> values = to_floats(data);
   std::vector<Vec3f> positions(data.count);
-  if (!positions.empty()) std::memcpy(static_cast<void*>(positions.data()), values.data(), values.size() * sizeof(float));
+  if (!positions.empty())
+    std::memcpy(static_cast<void*>(positions.data()), values.data(), values.size() * sizeof(float));
   return positions;
 }
 
@@ -60,7 +61,8 @@ Result<void> check_indices(std::span<const Index> indices, std::size_t point_cou
                            const std::string& where) {
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] == restart_value(type))
-      return fail(ErrorCode::Malformed, text(where, ": index ", i, " is ", indices[i], ", the primitive restart value"));
+      return fail(ErrorCode::Malformed,
+                  text(where, ": index ", i, " is ", indices[i], ", the primitive restart value"));
     if (indices[i] >= point_count)
       return fail(ErrorCode::Malformed,
                   text(where, ": index ", i, " is ", indices[i], ": there are ", point_count, " vertices"));
@@ -76,8 +78,10 @@ std::vector<Index> to_triangles(std::vector<Index> corners, std::size_t mode) {
   }
   std::vector<Index> triangles;
   for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
-    if (mode == kTriangleFan) triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
-    else triangles.insert(triangles.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
+    if (mode == kTriangleFan)
+      triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
+    else
+      triangles.insert(triangles.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
   }
   return triangles;
 }
@@ -131,7 +135,8 @@ Result<std::vector<Primitive>> PrimitiveReader::read_mesh(std::size_t mesh) {
   accessors_.clear();
   LODESTONE_TRY(const Json* const json, document_.element("meshes", "mesh", mesh));
   const Json* list = find_member(*json, "primitives");
-  if (list == nullptr || !list->is_array()) return fail(ErrorCode::Malformed, text("mesh ", mesh, ": has no primitives"));
+  if (list == nullptr || !list->is_array())
+    return fail(ErrorCode::Malformed, text("mesh ", mesh, ": has no primitives"));
 
   std::vector<Primitive> primitives;
   for (std::size_t i = 0; i < list->size(); ++i) {
@@ -145,8 +150,8 @@ Result<std::vector<Primitive>> PrimitiveReader::read_mesh(std::size_t mesh) {
     }
     if (const Json* targets = find_member(item, "targets")) omissions_.morph_targets += targets->size();
     const Json* draco = draco_extension(item);
-    LODESTONE_TRY(Primitive primitive, draco != nullptr ? read_draco(item, *draco, mode, where)
-                                                        : read_plain(item, mode, where));
+    LODESTONE_TRY(Primitive primitive,
+                  draco != nullptr ? read_draco(item, *draco, mode, where) : read_plain(item, mode, where));
     LODESTONE_TRY(primitive.material, material_number(item, document_, where));
     drop_unused_points(primitive);
     primitives.push_back(std::move(primitive));
@@ -191,7 +196,8 @@ Result<Primitive> PrimitiveReader::read_draco(const Json& json, const Json& exte
   std::vector<DracoRequest> requests;
   for (const auto& [name, id] : ids) {
     const auto declared = names.find(name);
-    if (declared == names.end()) return fail(ErrorCode::Malformed, text(where, ": Draco attribute ", name, " is not declared"));
+    if (declared == names.end())
+      return fail(ErrorCode::Malformed, text(where, ": Draco attribute ", name, " is not declared"));
     LODESTONE_TRY(const AccessorData type, document_.accessor_type(declared->second));
     requests.push_back({static_cast<std::uint32_t>(id), type.type, type.component_count, type.normalized});
   }
@@ -219,7 +225,8 @@ Result<Primitive> PrimitiveReader::read_draco(const Json& json, const Json& exte
 namespace {
 
 /// Lists the objects of a primitive that name a bufferView: its accessors and its Draco data.
-Result<std::vector<const Json*>> view_holders(const GltfDocument& document, const Json& primitive, const std::string& where) {
+Result<std::vector<const Json*>> view_holders(const GltfDocument& document, const Json& primitive,
+                                              const std::string& where) {
   std::vector<const Json*> holders;
   LODESTONE_TRY(auto accessors, attribute_accessors(primitive, where));
   if (find_member(primitive, "indices") != nullptr) {

@@ -165,7 +165,8 @@ Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document
   LODESTONE_TRY(const NodeGraph graph, read_graph(document));
   if (graph.parent.empty()) {
     std::vector<MeshInstance> instances;
-    for (std::size_t mesh = 0; mesh < document.count("meshes"); ++mesh) instances.push_back({kNoNode, mesh, Transform{}});
+    for (std::size_t mesh = 0; mesh < document.count("meshes"); ++mesh)
+      instances.push_back({kNoNode, mesh, Transform{}});
     return instances;
   }
   LODESTONE_TRY(const auto roots, find_roots(document, graph));

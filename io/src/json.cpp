@@ -40,7 +40,8 @@ std::optional<std::size_t> as_size(const Json& value) {
 }
 
 tl::unexpected<Error> wrong(std::string_view where, const char* key, const Json& value, const char* expected) {
-  std::string shown = value.is_structured() ? value.type_name() : value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string shown =
+      value.is_structured() ? value.type_name() : value.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (shown.size() > 40) shown = shown.substr(0, 40) + "...";
   return fail(ErrorCode::Malformed, text(where, ": ", key, " is ", shown, " and not ", expected));
 }

@@ -63,7 +63,8 @@ Result<std::vector<std::byte>> decode_meshopt(const Json& extension, std::span<c
                                               std::size_t max_bytes, std::string_view where) {
   LODESTONE_TRY(const Layout layout, read_layout(extension, where));
   if (!known(layout))
-    return fail(ErrorCode::Unsupported, text(where, ": meshopt mode '", layout.mode, "' with filter '", layout.filter, "'"));
+    return fail(ErrorCode::Unsupported,
+                text(where, ": meshopt mode '", layout.mode, "' with filter '", layout.filter, "'"));
   if (!stride_fits(layout)) return fail(ErrorCode::Malformed, text(where, ": meshopt stride ", layout.stride));
   if (layout.count > max_bytes / layout.stride)
     return fail(ErrorCode::LimitExceeded,

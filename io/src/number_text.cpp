@@ -50,8 +50,10 @@ std::string_view next_token(std::string_view& line) {
 std::string_view next_line(std::string_view& rest) {
   const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
   rest.remove_prefix(line.size());
-  if (rest.starts_with("\r\n")) rest.remove_prefix(2);
-  else if (!rest.empty()) rest.remove_prefix(1);
+  if (rest.starts_with("\r\n"))
+    rest.remove_prefix(2);
+  else if (!rest.empty())
+    rest.remove_prefix(1);
   return line;
 }
 

@@ -59,8 +59,8 @@ class SoupBuilder {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices < 3) ++short_faces_;
       for (unsigned k = 1; k + 1 < face.mNumIndices; ++k)
-        LODESTONE_CHECK(add_triangle(mesh, first, face.mIndices[0], face.mIndices[k + mirrored],
-                                     face.mIndices[k + !mirrored]));
+        LODESTONE_CHECK(
+            add_triangle(mesh, first, face.mIndices[0], face.mIndices[k + mirrored], face.mIndices[k + !mirrored]));
     }
     return {};
   }
@@ -95,7 +95,8 @@ class SoupBuilder {
   Result<void> add_triangle(const aiMesh& mesh, std::size_t first, unsigned a, unsigned b, unsigned c) {
     for (const unsigned index : {a, b, c}) {
       if (index >= mesh.mNumVertices)
-        return fail(ErrorCode::Malformed, text("vertex index ", index, " is out of range: there are ", mesh.mNumVertices));
+        return fail(ErrorCode::Malformed,
+                    text("vertex index ", index, " is out of range: there are ", mesh.mNumVertices));
       soup_.indices.push_back(static_cast<Index>(first + index));
     }
     soup_.face_material.push_back(mesh.mMaterialIndex + 1);

@@ -37,11 +37,16 @@ Format detect_format(std::span<const std::byte> bytes, std::string_view extensio
 
 Result<SoupFile> read_soup(std::span<const std::byte> bytes, const std::string& extension, const FileFetcher& fetch) {
   switch (detect_format(bytes, extension)) {
-    case Format::Gltf: return read_gltf(bytes, fetch);
-    case Format::Obj: return read_obj(bytes);
-    case Format::Ply: return read_ply(bytes);
-    case Format::Stl: return read_stl(bytes);
-    case Format::Other: break;
+    case Format::Gltf:
+      return read_gltf(bytes, fetch);
+    case Format::Obj:
+      return read_obj(bytes);
+    case Format::Ply:
+      return read_ply(bytes);
+    case Format::Stl:
+      return read_stl(bytes);
+    case Format::Other:
+      break;
   }
   return read_with_assimp(bytes, extension);
 }

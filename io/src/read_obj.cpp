@@ -242,7 +242,8 @@ class ObjReader {
     note(free_forms_, " free-form curves and surfaces are left out");
     if (has_vertex_colors_) file_.notes.push_back("the vertex colours are left out");
     if (!materials_.empty())
-      file_.notes.push_back(text("what the ", materials_.size(), " materials look like is left out; faces keep apart by material"));
+      file_.notes.push_back(
+          text("what the ", materials_.size(), " materials look like is left out; faces keep apart by material"));
   }
 
   struct Reference {

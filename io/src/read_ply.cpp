@@ -167,14 +167,22 @@ class Body {
 
   double binary_number(Scalar type) {
     switch (type) {
-      case Scalar::Int8: return raw<std::int8_t>();
-      case Scalar::UInt8: return raw<std::uint8_t>();
-      case Scalar::Int16: return raw<std::int16_t>();
-      case Scalar::UInt16: return raw<std::uint16_t>();
-      case Scalar::Int32: return raw<std::int32_t>();
-      case Scalar::UInt32: return raw<std::uint32_t>();
-      case Scalar::Float32: return static_cast<double>(raw<float>());
-      case Scalar::Float64: return raw<double>();
+      case Scalar::Int8:
+        return raw<std::int8_t>();
+      case Scalar::UInt8:
+        return raw<std::uint8_t>();
+      case Scalar::Int16:
+        return raw<std::int16_t>();
+      case Scalar::UInt16:
+        return raw<std::uint16_t>();
+      case Scalar::Int32:
+        return raw<std::int32_t>();
+      case Scalar::UInt32:
+        return raw<std::uint32_t>();
+      case Scalar::Float32:
+        return static_cast<double>(raw<float>());
+      case Scalar::Float64:
+        return raw<double>();
     }
     return fail_now();
   }
@@ -201,10 +209,24 @@ struct SlotName {
   std::string_view name;
   Slot slot;
 };
-constexpr std::array<SlotName, 18> kSlotNames = {
-    {{"x", kX},         {"y", kY},           {"z", kZ},         {"nx", kNx},        {"ny", kNy},       {"nz", kNz},
-     {"red", kRed},     {"green", kGreen},   {"blue", kBlue},   {"alpha", kAlpha},  {"s", kU},         {"t", kV},
-     {"u", kU},         {"v", kV},           {"texture_u", kU}, {"texture_v", kV},  {"texture_s", kU}, {"texture_t", kV}}};
+constexpr std::array<SlotName, 18> kSlotNames = {{{"x", kX},
+                                                  {"y", kY},
+                                                  {"z", kZ},
+                                                  {"nx", kNx},
+                                                  {"ny", kNy},
+                                                  {"nz", kNz},
+                                                  {"red", kRed},
+                                                  {"green", kGreen},
+                                                  {"blue", kBlue},
+                                                  {"alpha", kAlpha},
+                                                  {"s", kU},
+                                                  {"t", kV},
+                                                  {"u", kU},
+                                                  {"v", kV},
+                                                  {"texture_u", kU},
+                                                  {"texture_v", kV},
+                                                  {"texture_s", kU},
+                                                  {"texture_t", kV}}};
 
 class PlyReader {
  public:
@@ -218,7 +240,8 @@ class PlyReader {
       if (body_.failed()) return broken(text("element ", element.name, ": the file ends or a number is broken"));
     }
     LODESTONE_CHECK(check_indices());
-    if (short_faces_ > 0) file_.notes.push_back(text(short_faces_, " faces with fewer than three corners are left out"));
+    if (short_faces_ > 0)
+      file_.notes.push_back(text(short_faces_, " faces with fewer than three corners are left out"));
     return std::move(file_);
   }
 
@@ -261,8 +284,10 @@ class PlyReader {
     std::array<double, kSlotCount + 1> v{};
     for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
       for (std::size_t p = 0; p < slots.size(); ++p) {
-        if (element.properties[p].list_count) body_.skip(element.properties[p]);
-        else v[slots[p]] = body_.number(element.properties[p].type);
+        if (element.properties[p].list_count)
+          body_.skip(element.properties[p]);
+        else
+          v[slots[p]] = body_.number(element.properties[p].type);
       }
       const auto f = [&](Slot slot) { return static_cast<float>(v[slot]); };
       file_.soup.positions.push_back({f(kX), f(kY), f(kZ)});
@@ -288,8 +313,10 @@ class PlyReader {
     Attribute attribute{"COLOR_0", bytes ? ComponentType::UInt8 : ComponentType::Float32, component_count, bytes, {}};
     for (std::size_t i = 0; i < colors.size(); ++i) {
       if (i % 4 == 3 && !alpha) continue;
-      if (bytes) append(attribute.data, static_cast<std::uint8_t>(colors[i] > 0 ? std::min(colors[i], 255.0) : 0));
-      else append(attribute.data, static_cast<float>(colors[i]));
+      if (bytes)
+        append(attribute.data, static_cast<std::uint8_t>(colors[i] > 0 ? std::min(colors[i], 255.0) : 0));
+      else
+        append(attribute.data, static_cast<float>(colors[i]));
     }
     file_.soup.attributes.push_back(std::move(attribute));
   }
@@ -297,7 +324,8 @@ class PlyReader {
   Result<void> read_faces(const Element& element) {
     for (std::size_t i = 0; i < element.count && !body_.failed(); ++i)
       for (const Property& property : element.properties) {
-        const bool corners = property.list_count && (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool corners =
+            property.list_count && (property.name == "vertex_indices" || property.name == "vertex_index");
         if (!corners) {
           body_.skip(property);
           continue;

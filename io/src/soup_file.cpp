@@ -49,8 +49,10 @@ void tidy_normals(SoupFile& file) {
   std::vector<std::size_t> without_direction;
   for (std::size_t point = 0; point < file.soup.positions.size(); ++point) {
     const Vec3 normal(load<Vec3f>(normals->data, point * sizeof(Vec3f)));
-    if (!has_direction(normal)) without_direction.push_back(point);
-    else if (std::abs(length(normal) - 1) > kUnitTolerance) store_unit(*normals, point, normal);
+    if (!has_direction(normal))
+      without_direction.push_back(point);
+    else if (std::abs(length(normal) - 1) > kUnitTolerance)
+      store_unit(*normals, point, normal);
   }
   if (without_direction.empty()) return;
   compute_normals(file.soup, without_direction, *normals);

@@ -29,8 +29,10 @@ std::vector<std::byte> plane_bytes(const Column& column, std::size_t plane) {
   std::vector<std::byte> out;
   out.reserve(column.values.size());
   for (const std::uint32_t value : column.values) {
-    if (column.coding == Coding::Varint) append_varint(out, value);
-    else out.push_back(static_cast<std::byte>(value >> (8 * plane)));
+    if (column.coding == Coding::Varint)
+      append_varint(out, value);
+    else
+      out.push_back(static_cast<std::byte>(value >> (8 * plane)));
   }
   return out;
 }
@@ -104,7 +106,8 @@ Result<std::uint64_t> ColumnReader::varint() {
 }
 
 Result<std::span<const std::byte>> ColumnReader::take(std::uint64_t size) {
-  if (size > bytes_.size() - at_) return broken(text("block of ", size, " bytes where ", bytes_.size() - at_, " are left"));
+  if (size > bytes_.size() - at_)
+    return broken(text("block of ", size, " bytes where ", bytes_.size() - at_, " are left"));
   const auto taken = bytes_.subspan(at_, static_cast<std::size_t>(size));
   at_ += taken.size();
   return taken;
@@ -143,7 +146,8 @@ Result<void> ColumnReader::read(Column& column) {
   for (std::size_t plane = 1; plane < plane_count(column.coding); ++plane) {
     LODESTONE_TRY(const std::vector<std::byte> bytes, block());
     if (bytes.size() != first.size()) return broken("planes of different sizes");
-    for (std::size_t i = 0; i < bytes.size(); ++i) column.values[i] |= static_cast<std::uint32_t>(bytes[i]) << (8 * plane);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+      column.values[i] |= static_cast<std::uint32_t>(bytes[i]) << (8 * plane);
   }
   return {};
 }

@@ -12,7 +12,7 @@ namespace lodestone::detail {
 
 /// How a column's values become bytes.
 enum class Coding : std::uint8_t {
-  Varint = 0,  ///< base 128, low digits first: small numbers
+  Varint = 0,   ///< base 128, low digits first: small numbers
   Planes1 = 1,  ///< one byte each
   Planes2 = 2,  ///< all low bytes, then all high bytes
   Planes4 = 4,  ///< the same with four planes, low bytes first

@@ -76,22 +76,28 @@ Result<FixedHeader> check_fixed(std::span<const std::byte> bytes) {
   const auto magic = std::as_bytes(std::span(kStreamMagic));
   if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
     return broken("does not begin with the magic number", 0);
-  if (bytes.size() < kFixedHeaderBytes) return broken(text("ends inside its header after ", bytes.size(), " bytes"), bytes.size());
+  if (bytes.size() < kFixedHeaderBytes)
+    return broken(text("ends inside its header after ", bytes.size(), " bytes"), bytes.size());
   const FixedHeader h = read_fixed(bytes);
   if (h.major != kStreamMajor)
-    return fail(ErrorCode::Unsupported, text("stream: version ", h.major, '.', h.minor, ", where ", kStreamMajor, " is known"), 8);
+    return fail(ErrorCode::Unsupported,
+                text("stream: version ", h.major, '.', h.minor, ", where ", kStreamMajor, " is known"), 8);
   if (h.encoding != kColumnEncoding)
     return fail(ErrorCode::Unsupported, text("stream: encoding ", h.encoding, " is not known"), 62);
   if (h.counts.group_count == 0 || h.counts.group_count > kMaxGroups || h.counts.attribute_count > kMaxAttributes)
-    return fail(ErrorCode::LimitExceeded, text("stream: ", h.counts.group_count, " groups and ", h.counts.attribute_count,
-                                               " attributes are outside the limits"), 52);
+    return fail(ErrorCode::LimitExceeded,
+                text("stream: ", h.counts.group_count, " groups and ", h.counts.attribute_count,
+                     " attributes are outside the limits"),
+                52);
   const std::uint64_t least = kFixedHeaderBytes + std::uint64_t{h.chunk_count} * h.entry_bytes + kHeaderChecksumBytes;
   if (h.entry_bytes < kDirectoryEntryBytes || h.chunk_count == 0 || h.counts.header_bytes < least)
     return broken(text("header of ", h.counts.header_bytes, " bytes cannot hold ", h.chunk_count, " chunks"), 12);
   if (h.counts.header_bytes > bytes.size())
-    return broken(text("ends inside its header: ", bytes.size(), " of ", h.counts.header_bytes, " bytes"), bytes.size());
+    return broken(text("ends inside its header: ", bytes.size(), " of ", h.counts.header_bytes, " bytes"),
+                  bytes.size());
   const std::size_t end = h.counts.header_bytes - kHeaderChecksumBytes;
-  if (checksum64(bytes.first(end)) != load<std::uint64_t>(bytes, end)) return broken("the header's checksum is wrong", end);
+  if (checksum64(bytes.first(end)) != load<std::uint64_t>(bytes, end))
+    return broken("the header's checksum is wrong", end);
   return h;
 }
 
@@ -107,13 +113,16 @@ Result<void> check_entries(const StreamStart& start) {
     if (c.record_begin != record || (i == 0) != (c.record_count == 0))
       return broken(text("chunk ", i, " has ", c.record_count, " records from ", c.record_begin), at + 32);
     if (c.decoded_bytes / kMaxExpansion > c.byte_length)
-      return fail(ErrorCode::LimitExceeded, text("stream: chunk ", i, " of ", c.byte_length, " bytes says it holds ",
-                                                 c.decoded_bytes), at + 16);
+      return fail(ErrorCode::LimitExceeded,
+                  text("stream: chunk ", i, " of ", c.byte_length, " bytes says it holds ", c.decoded_bytes), at + 16);
     offset += c.byte_length;
     record += c.record_count;
     if (c.vertex_count != h.base_vertex_count + record || start.wedge_counts[i] > h.wedge_count)
-      return broken(text("chunk ", i, " ends with ", c.vertex_count, " vertices and ", start.wedge_counts[i], " wedges"), at + 48);
-    if (!std::isfinite(c.deviation) || !std::isfinite(c.curvature_error)) return broken(text("chunk ", i, " has no error"), at + 56);
+      return broken(
+          text("chunk ", i, " ends with ", c.vertex_count, " vertices and ", start.wedge_counts[i], " wedges"),
+          at + 48);
+    if (!std::isfinite(c.deviation) || !std::isfinite(c.curvature_error))
+      return broken(text("chunk ", i, " has no error"), at + 56);
   }
   const bool complete = offset == start.directory.total_bytes && record == h.record_count &&
                         h.vertex_count == std::uint64_t{h.base_vertex_count} + h.record_count &&
@@ -157,7 +166,8 @@ Result<StreamStart> read_stream_start(std::span<const std::byte> bytes) {
   start.directory.total_bytes = fixed.total_bytes;
   if (fixed.total_bytes < fixed.counts.header_bytes) return broken("is shorter than its header", 16);
   // A later minor version may have grown the fixed part and the entries: the directory ends where the checksum begins.
-  const std::size_t directory = fixed.counts.header_bytes - kHeaderChecksumBytes - std::size_t{fixed.chunk_count} * fixed.entry_bytes;
+  const std::size_t directory =
+      fixed.counts.header_bytes - kHeaderChecksumBytes - std::size_t{fixed.chunk_count} * fixed.entry_bytes;
   for (std::size_t i = 0; i < fixed.chunk_count; ++i) {
     std::uint32_t wedge_count = 0;
     start.directory.chunks.push_back(read_entry(bytes.subspan(directory + i * fixed.entry_bytes), wedge_count));

@@ -52,12 +52,18 @@ OrderedComponents::OrderedComponents(ComponentType type)
 
 std::uint32_t OrderedComponents::load(std::span<const std::byte> component) const {
   switch (type_) {
-    case ComponentType::Int8: return detail::load<std::uint8_t>(component, 0) ^ 0x80u;
-    case ComponentType::UInt8: return detail::load<std::uint8_t>(component, 0);
-    case ComponentType::Int16: return detail::load<std::uint16_t>(component, 0) ^ 0x8000u;
-    case ComponentType::UInt16: return detail::load<std::uint16_t>(component, 0);
-    case ComponentType::UInt32: return detail::load<std::uint32_t>(component, 0);
-    case ComponentType::Float32: return ordered_bits(detail::load<float>(component, 0));
+    case ComponentType::Int8:
+      return detail::load<std::uint8_t>(component, 0) ^ 0x80u;
+    case ComponentType::UInt8:
+      return detail::load<std::uint8_t>(component, 0);
+    case ComponentType::Int16:
+      return detail::load<std::uint16_t>(component, 0) ^ 0x8000u;
+    case ComponentType::UInt16:
+      return detail::load<std::uint16_t>(component, 0);
+    case ComponentType::UInt32:
+      return detail::load<std::uint32_t>(component, 0);
+    case ComponentType::Float32:
+      return ordered_bits(detail::load<float>(component, 0));
   }
   return 0;
 }
@@ -171,7 +177,8 @@ void FaceReplay::place_fine_faces(const ProgressiveMesh& mesh, std::size_t recor
   const std::size_t size = sector.polygon_size, fine_count = sector.closed != 0 ? size : size - 1;
 
   fine_.assign(slots, slots + (size - 2));
-  for (std::size_t i = size - 2; i < fine_count; ++i) fine_.push_back(static_cast<Index>(group.corners.size() / 3 + i - (size - 2)));
+  for (std::size_t i = size - 2; i < fine_count; ++i)
+    fine_.push_back(static_cast<Index>(group.corners.size() / 3 + i - (size - 2)));
   group.corners.resize(group.corners.size() + 3 * (fine_count - (size - 2)));
   group.neighbours.resize(group.corners.size(), kNoIndex);
   for (std::size_t i = 0; i < fine_count; ++i) {
@@ -212,8 +219,8 @@ int PolygonTracer::rotation_of(std::span<const std::uint8_t, 3> triangle, std::s
   return kFree;
 }
 
-bool PolygonTracer::trace(std::span<const std::uint8_t, 3> triangle, const FaceReplay& faces, std::size_t group, Index slot,
-                          int rotation) {
+bool PolygonTracer::trace(std::span<const std::uint8_t, 3> triangle, const FaceReplay& faces, std::size_t group,
+                          Index slot, int rotation) {
   const auto face = faces.face(group, slot);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t corner = (i + static_cast<std::size_t>(rotation)) % 3;

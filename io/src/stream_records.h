@@ -152,7 +152,8 @@ class PolygonTracer {
   int rotation_of(std::span<const std::uint8_t, 3> triangle, std::span<const Index, 3> face) const;
 
   /// Notes a triangle's corners and the faces across its edges; false if that contradicts a corner traced before.
-  bool trace(std::span<const std::uint8_t, 3> triangle, const FaceReplay& faces, std::size_t group, Index slot, int rotation);
+  bool trace(std::span<const std::uint8_t, 3> triangle, const FaceReplay& faces, std::size_t group, Index slot,
+             int rotation);
 
   /// The wedges traced; kNoIndex where no triangle has a corner.
   std::span<const Index> wedges() const { return wedges_; }

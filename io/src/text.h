@@ -11,7 +11,9 @@ namespace lodestone::detail {
 inline void append_text(std::string& out, std::string_view part) { out += part; }
 inline void append_text(std::string& out, char part) { out += part; }
 inline void append_text(std::string& out, std::integral auto part) { out += std::to_string(part); }
-inline void append_text(std::string& out, const std::same_as<std::filesystem::path> auto& part) { out += part.string(); }
+inline void append_text(std::string& out, const std::same_as<std::filesystem::path> auto& part) {
+  out += part.string();
+}
 inline void append_text(std::string& out, double part) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%g", part);

@@ -47,8 +47,9 @@ std::vector<std::byte> to_obj(const Mesh& mesh) {
   for (std::size_t w = 0; texcoords != nullptr && w < mesh.wedge_count(); ++w)
     append_line(out, "vt", {load_f32(texcoords->data, 8 * w), 1 - load_f32(texcoords->data, 8 * w + 4)});
   for (std::size_t w = 0; normals != nullptr && w < mesh.wedge_count(); ++w)
-    append_line(out, "vn", {load_f32(normals->data, 12 * w), load_f32(normals->data, 12 * w + 4),
-                            load_f32(normals->data, 12 * w + 8)});
+    append_line(
+        out, "vn",
+        {load_f32(normals->data, 12 * w), load_f32(normals->data, 12 * w + 4), load_f32(normals->data, 12 * w + 8)});
   Index material = 0;
   for (Index face = 0; face < mesh.face_count(); ++face) {
     if (mesh.material_of(face) != material) {
@@ -59,7 +60,8 @@ std::vector<std::byte> to_obj(const Mesh& mesh) {
     }
     out += 'f';
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner)
-      append_corner(out, mesh.corner_vertex(corner), mesh.corner_wedge[corner], texcoords != nullptr, normals != nullptr);
+      append_corner(out, mesh.corner_vertex(corner), mesh.corner_wedge[corner], texcoords != nullptr,
+                    normals != nullptr);
     out += '\n';
   }
   const auto bytes = std::as_bytes(std::span(out));

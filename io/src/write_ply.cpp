@@ -62,8 +62,10 @@ std::vector<std::byte> to_ply(const Mesh& mesh) {
   std::vector<std::byte> out;
   append_bytes(out, std::as_bytes(std::span(text_header)));
   for (std::size_t i = 0; i < point_count; ++i) {
-    if (attributes.any()) append_wedge(out, mesh, attributes, i);
-    else append(out, mesh.positions[i]);
+    if (attributes.any())
+      append_wedge(out, mesh, attributes, i);
+    else
+      append(out, mesh.positions[i]);
   }
   for (Index corner = 0; corner < mesh.corner_wedge.size(); ++corner) {
     if (corner % 3 == 0) append(out, std::uint8_t{3});

@@ -227,6 +227,10 @@ void narrow_maximum(const Mesh& from, const Mesh& to, const SurfaceIndex& to_ind
   result.maximum_bound = narrowed.maximum_bound;
 }
 
+double larger_diagonal(const Mesh& a, const Mesh& b) {
+  return std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
+}
+
 /// The deviation where a mesh has no faces: the means are as the maximum.
 Deviation deviation_of_empty(const Mesh& a, const Mesh& b) {
   Deviation result = detail::maximum_of_empty(a, b);
@@ -241,7 +245,7 @@ Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions
   if (a.face_count() == 0 || b.face_count() == 0) return deviation_of_empty(a, b);
   const SurfaceIndex a_index(a);
   const SurfaceIndex b_index(b);
-  const Goal goal = detail::goal_of(options, a, b, 0);
+  const Goal goal = detail::goal_of(options, larger_diagonal(a, b), 0);
   Deviation result;
   result.mean_normal_angle = measure_means(a, b, b_index, options.sample_count, result.forward);
   measure_means(b, a, a_index, options.sample_count, result.backward);
@@ -258,7 +262,7 @@ Deviation measure_maximum(const Mesh& a, const SurfaceIndex& a_index, const Mesh
   PatchBound a_patch(a), b_patch(b);
   SupremumSearch forward(a, b_index, b_patch, a_bounds);
   SupremumSearch backward(b, a_index, a_patch, b_bounds);
-  return detail::narrow_both(forward, backward, detail::goal_of(options, a, b, enough), options.budget);
+  return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a, b), enough), options.budget);
 }
 
 }  // namespace lodestone

@@ -5,11 +5,13 @@
 
 #include <lodestone/lod/level_deviation.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
 #include "supremum.h"
+#include "triangle.h"
 #include "triple_table.h"
 
 namespace lodestone {
@@ -76,6 +78,7 @@ struct LevelDeviation::Impl {
 
   const Mesh& original;
   DeviationOptions options;
+  double diagonal;  // The original's.
   SurfaceIndex index;
   PatchBound patch;
   VertexFinder vertices;
@@ -93,6 +96,7 @@ struct LevelDeviation::Impl {
 LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
     : original(mesh),
       options(options_),
+      diagonal(bounding_box(mesh).diagonal()),
       index(mesh),
       patch(mesh),
       vertices(mesh),
@@ -186,7 +190,7 @@ void LevelDeviation::Impl::bound_new_faces(const Mesh& level, const Goal& goal, 
     for (const Index g : patch.patch()) {
       for (Index corner = 3 * g; corner < 3 * g + 3; ++corner) {
         const Index v = original.corner_vertex(corner);
-        if (lost[v]) anchor_at(v, triangle, f);
+        if (lost[v] && forward.vertices[v].face != f) anchor_at(v, triangle, f);
       }
     }
   }
@@ -211,7 +215,7 @@ Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double 
   PatchBound level_patch(level);
   SupremumSearch forward_search(original, level_index, level_patch, forward);
   SupremumSearch backward_search(level, index, patch, backward);
-  Goal goal = detail::goal_of(options, original, level, enough);
+  Goal goal = detail::goal_of(options, std::max(diagonal, bounding_box(level).diagonal()), enough);
   start(forward_search, backward_search, goal);
   bound_new_faces(level, goal, backward);
   const Deviation result = detail::narrow_both(forward_search, backward_search, goal, options.budget);

@@ -68,9 +68,7 @@ std::vector<Index> opposite_corners(const Mesh& mesh) {
 }
 
 PatchBound::PatchBound(const Mesh& surface)
-    : triangles_(surface.face_count()), opposite_(opposite_corners(surface)), state_(surface.face_count(), 0) {
-  for (Index f = 0; f < triangles_.size(); ++f) triangles_[f] = triangle_of(surface, f);
-}
+    : surface_(surface), opposite_(opposite_corners(surface)), state_(surface.face_count(), 0) {}
 
 PatchBound::Point PatchBound::Frame::project(const Vec3& p) const {
   const Vec3 d = p - origin;
@@ -147,17 +145,33 @@ int PatchBound::crossing(const Point& p, const Point& q, const Point& centre) {
 }
 
 PatchBound::Points PatchBound::project(const Frame& frame, Index face) const {
-  const Triangle& t = triangles_[face];
-  return {frame.project(Vec3(t.a)), frame.project(Vec3(t.b)), frame.project(Vec3(t.c))};
+  return {frame.project(surface_.corner_position(3 * face)), frame.project(surface_.corner_position(3 * face + 1)),
+          frame.project(surface_.corner_position(3 * face + 2))};
 }
 
 /// Whether the face is in the patch, which it joins if it is over or under the triangle.
 bool PatchBound::add_if_over(const Frame& frame, Index face) {
-  if (state_[face] / 2 == run_) return state_[face] % 2 != 0;
-  const bool over = !separated(frame.corners, project(frame, face));
+  return was_tested(face) ? state_[face] % 2 != 0 : add_tested(frame, face, project(frame, face));
+}
+
+/// The same for the face of the corner `other`, two of whose corners are known: those of its edge.
+bool PatchBound::add_across(const Frame& frame, Index other, const Point& at_other, const Point& after_other) {
+  const Index face = face_of_corner(other);
+  if (was_tested(face)) return state_[face] % 2 != 0;
+  Points points;
+  points[other % 3] = at_other;
+  points[next_corner(other) % 3] = after_other;
+  points[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
+  return add_tested(frame, face, points);
+}
+
+bool PatchBound::add_tested(const Frame& frame, Index face, const Points& points) {
+  const bool over = !separated(frame.corners, points);
   state_[face] = 2 * run_ + over;
-  if (over) patch_.push_back(face);
-  return over;
+  if (!over) return false;
+  patch_.push_back(face);
+  points_.push_back(points);
+  return true;
 }
 
 /// Starts the patch with a face, or where that is not over the triangle with one of those around it.
@@ -185,7 +199,7 @@ bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& poi
   for (Index i = 0; i < 3; ++i) {
     const Index j = (i + 1) % 3;
     const Index other = opposite_[3 * face + i];
-    if (other != kNoIndex && add_if_over(frame, face_of_corner(other))) continue;
+    if (other != kNoIndex && add_across(frame, other, points[j], points[i])) continue;
     if (other == kNoIndex && !separated(frame.corners, {points[i], points[j], points[j]})) return false;
     winding += crossing(points[i], points[j], centre);
   }
@@ -194,6 +208,7 @@ bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& poi
 
 double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, double target, double slack) {
   patch_.clear();
+  points_.clear();
   ++run_;
   Frame frame;
   if (!make_frame(triangle, slack, frame)) return kNone;
@@ -202,7 +217,7 @@ double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, doubl
   double height = 0;
   int winding = 0;
   for (std::size_t i = 0; i < patch_.size(); ++i) {
-    const Points points = project(frame, patch_[i]);
+    const Points points = points_[i];
     double face_height = std::max({std::abs(points[0].height), std::abs(points[1].height), std::abs(points[2].height)});
     if (face_height + slack > target) face_height = clipped_height(frame.corners, points);
     height = std::max(height, face_height);

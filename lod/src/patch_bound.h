@@ -7,8 +7,6 @@
 
 #include <lodestone/core/mesh.h>
 
-#include "triangle.h"
-
 namespace lodestone::detail {
 
 /// Returns for each corner, standing for the edge from it to the next one, the corner that stands for the same edge in
@@ -23,6 +21,7 @@ std::vector<Index> opposite_corners(const Mesh& mesh);
 /// height of the patch over the triangle bounds the distance.
 class PatchBound {
  public:
+  /// Pre: `surface` outlives the object.
   explicit PatchBound(const Mesh& surface);
 
   /// Returns an upper bound of the distances from `triangle` to the surface, or infinity where this shows none that is
@@ -54,13 +53,17 @@ class PatchBound {
 
   Points project(const Frame& frame, Index face) const;
   bool add_if_over(const Frame& frame, Index face);
+  bool add_across(const Frame& frame, Index other, const Point& at_other, const Point& after_other);
+  bool add_tested(const Frame& frame, Index face, const Points& points);
+  bool was_tested(Index face) const { return state_[face] / 2 == run_; }
   void start_patch(const Frame& frame, Index start);
   bool start_in_star(const Frame& frame, Index corner);
   bool visit_outline(const Frame& frame, Index face, const Points& points, const Point& centre, int& winding);
 
-  std::vector<Triangle> triangles_;
+  const Mesh& surface_;
   std::vector<Index> opposite_;
   std::vector<Index> patch_;
+  std::vector<Points> points_;  // Of the patch's faces.
   std::vector<std::uint32_t> state_;  // Per face: 2·run_ if tested in this run, + 1 if in the patch.
   std::uint32_t run_ = 0;
 };

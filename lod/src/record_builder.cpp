@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "canonical_face.h"
 
@@ -13,6 +14,8 @@ struct RecordBuilder::Numbering {
   std::vector<Index> wedge;
   std::vector<Index> face;
   std::vector<Index> source_wedge;  // by new number
+  std::vector<Index> wedge_begin;   // by vertex of the full mesh: its wedges in vertex_wedges
+  std::vector<Index> vertex_wedges;
   std::vector<Index> group_face_count;
 };
 
@@ -46,6 +49,15 @@ void RecordBuilder::end_round() {
   if (round_end_.empty() ? !vertex_.empty() : round_end_.back() < vertex_.size()) round_end_.push_back(vertex_.size());
 }
 
+void RecordBuilder::list_wedges(Numbering& numbers) const {
+  numbers.wedge_begin.assign(mesh_->vertex_count() + 1, 0);
+  for (const Index vertex : mesh_->wedge_vertex) ++numbers.wedge_begin[vertex + 1];
+  std::partial_sum(numbers.wedge_begin.begin(), numbers.wedge_begin.end(), numbers.wedge_begin.begin());
+  std::vector<Index> next(numbers.wedge_begin.begin(), numbers.wedge_begin.end() - 1);
+  numbers.vertex_wedges.resize(mesh_->wedge_count());
+  for (Index w = 0; w < mesh_->wedge_count(); ++w) numbers.vertex_wedges[next[mesh_->wedge_vertex[w]]++] = w;
+}
+
 void RecordBuilder::number_base(const Connectivity& base, ProgressiveMesh& result, Numbering& numbers) const {
   numbers.vertex.assign(mesh_->vertex_count(), kNoIndex);
   numbers.wedge.assign(mesh_->wedge_count(), kNoIndex);
@@ -57,14 +69,13 @@ void RecordBuilder::number_base(const Connectivity& base, ProgressiveMesh& resul
     result.positions.push_back(mesh_->positions[v]);
   }
   result.base_vertex_count = static_cast<Index>(result.positions.size());
-  for (Index w = 0; w < mesh_->wedge_count(); ++w)
-    if (numbers.vertex[mesh_->wedge_vertex[w]] != kNoIndex) numbers.source_wedge.push_back(w);
-  std::stable_sort(numbers.source_wedge.begin(), numbers.source_wedge.end(), [&](Index a, Index b) {
-    return numbers.vertex[mesh_->wedge_vertex[a]] < numbers.vertex[mesh_->wedge_vertex[b]];
-  });
-  for (Index i = 0; i < numbers.source_wedge.size(); ++i) {
-    numbers.wedge[numbers.source_wedge[i]] = i;
-    result.wedge_vertex.push_back(numbers.vertex[mesh_->wedge_vertex[numbers.source_wedge[i]]]);
+  for (Index v = 0; v < mesh_->vertex_count(); ++v) {
+    if (numbers.vertex[v] == kNoIndex) continue;
+    for (Index i = numbers.wedge_begin[v]; i < numbers.wedge_begin[v + 1]; ++i) {
+      numbers.wedge[numbers.vertex_wedges[i]] = static_cast<Index>(result.wedge_vertex.size());
+      numbers.source_wedge.push_back(numbers.vertex_wedges[i]);
+      result.wedge_vertex.push_back(numbers.vertex[v]);
+    }
   }
   result.base_wedge_count = static_cast<Index>(result.wedge_vertex.size());
   for (std::size_t g = 0; g < materials_.size(); ++g) result.groups.push_back({materials_[g], 0, {}});
@@ -80,20 +91,25 @@ void RecordBuilder::number_base(const Connectivity& base, ProgressiveMesh& resul
 }
 
 void RecordBuilder::number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const {
+  const Index source = vertex_[removal];
   const auto vertex = static_cast<Index>(result.positions.size());
-  numbers.vertex[vertex_[removal]] = vertex;
-  result.positions.push_back(mesh_->positions[vertex_[removal]]);
+  numbers.vertex[source] = vertex;
+  result.positions.push_back(mesh_->positions[source]);
+  const auto number_wedge = [&](Index wedge) {
+    if (numbers.wedge[wedge] != kNoIndex) return;
+    numbers.wedge[wedge] = static_cast<Index>(result.wedge_vertex.size());
+    result.wedge_vertex.push_back(vertex);
+    numbers.source_wedge.push_back(wedge);
+  };
   for (std::size_t s = sector_begin_[removal]; s < sector_begin_[removal + 1]; ++s) {
-    Index& wedge = numbers.wedge[center_[s]];
-    if (wedge == kNoIndex) {
-      wedge = static_cast<Index>(result.wedge_vertex.size());
-      result.wedge_vertex.push_back(vertex);
-      numbers.source_wedge.push_back(center_[s]);
-    }
+    number_wedge(center_[s]);
     const std::size_t kept = polygon_begin_[s + 1] - polygon_begin_[s] - 2;
     for (std::size_t i = face_begin_[s] + kept; i < face_begin_[s + 1]; ++i)
       numbers.face[faces_[i]] = numbers.group_face_count[group_of(faces_[i])]++;
   }
+  // Wedges that only finer levels use (a strip between two seams may have gone before its end did) belong here, too.
+  for (Index i = numbers.wedge_begin[source]; i < numbers.wedge_begin[source + 1]; ++i)
+    number_wedge(numbers.vertex_wedges[i]);
 }
 
 void RecordBuilder::write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const {
@@ -149,6 +165,7 @@ void RecordBuilder::copy_attributes(ProgressiveMesh& result, const Numbering& nu
 ProgressiveMesh RecordBuilder::finish(const Connectivity& base, const std::vector<float>& deviation) {
   ProgressiveMesh result;
   Numbering numbers;
+  list_wedges(numbers);
   number_base(base, result, numbers);
   result.sector_begin.push_back(0);
   result.polygon_begin.push_back(0);

@@ -24,6 +24,7 @@ class RecordBuilder {
  private:
   struct Numbering;
   Index group_of(Index face) const;
+  void list_wedges(Numbering& numbers) const;
   void number_base(const Connectivity& base, ProgressiveMesh& result, Numbering& numbers) const;
   void number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const;
   void write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const;

@@ -54,6 +54,7 @@ Verdict RemovalEvaluator::gather(Index vertex, RemovalRecord& record) {
   const Connectivity& mesh = state_->connectivity;
   mesh.gather_star(vertex, star_);
   if (star_.corners.size() > kMaxRing) return Verdict::Ring;
+  if (star_.closed && star_.corners.size() < 3) return Verdict::Link;  // two faces back to back: no hole to fill
   const VertexKind kind = mesh.kind(vertex, star_);
   if (kind != VertexKind::Interior && kind != VertexKind::Border && kind != VertexKind::Feature) return Verdict::Locked;
   record.vertex = vertex;

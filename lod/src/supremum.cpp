@@ -291,13 +291,11 @@ SupremumSearch::Piece SupremumSearch::pop() {
   return piece;
 }
 
-Goal goal_of(const DeviationOptions& options, const Mesh& a, const Mesh& b, double enough) {
+Goal goal_of(const DeviationOptions& options, double diagonal, double enough) {
   Goal goal;
   goal.relative_tolerance = options.relative_tolerance;
   goal.absolute_tolerance = options.absolute_tolerance;
-  if (!(goal.absolute_tolerance > 0)) {
-    goal.absolute_tolerance = 1e-7 * std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
-  }
+  if (!(goal.absolute_tolerance > 0)) goal.absolute_tolerance = 1e-7 * diagonal;
   goal.enough = enough;
   return goal;
 }

@@ -29,8 +29,8 @@ struct Goal {
   double patch_slack() const { return 0.25 * absolute_tolerance; }
 };
 
-/// Returns the goal that the options ask for, with nothing found.
-Goal goal_of(const DeviationOptions& options, const Mesh& a, const Mesh& b, double enough);
+/// Returns the goal that the options ask for, with nothing found; `diagonal` is the larger surface's.
+Goal goal_of(const DeviationOptions& options, double diagonal, double enough);
 
 /// A point of one surface and what is known of its distance to the other.
 struct Anchor {

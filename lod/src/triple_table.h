@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,7 +15,7 @@ using Triple = std::array<std::uint32_t, 3>;
 class TripleTable {
  public:
   /// Pre: at most `capacity` triples will be inserted.
-  explicit TripleTable(std::size_t capacity = 0) : slots_(std::bit_ceil(2 * capacity + 2)) {}
+  explicit TripleTable(std::size_t capacity = 0) : slots_(capacity + capacity / 2 + 2) {}
 
   /// Returns the index stored for `key`, or kNoIndex.
   Index find(const Triple& key) const { return slots_[slot_of(key)].value; }
@@ -35,16 +34,16 @@ class TripleTable {
   };
 
   std::size_t slot_of(const Triple& key) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t i = hash(key) & mask;
-    while (slots_[i].value != kNoIndex && slots_[i].key != key) i = (i + 1) & mask;
+    // The upper half of the hash, as a share of the table: any size will do, not only powers of two.
+    std::size_t i = static_cast<std::size_t>((hash(key) >> 32) * slots_.size() >> 32);
+    while (slots_[i].value != kNoIndex && slots_[i].key != key) i = i + 1 < slots_.size() ? i + 1 : 0;
     return i;
   }
 
-  static std::size_t hash(const Triple& key) {
+  static std::uint64_t hash(const Triple& key) {
     std::uint64_t h = (std::uint64_t{key[0]} << 32 | key[1]) * 0x9e3779b97f4a7c15ULL;
     h = (h ^ (h >> 29) ^ key[2]) * 0xbf58476d1ce4e5b9ULL;
-    return static_cast<std::size_t>(h ^ (h >> 32));
+    return h ^ (h << 32);
   }
 
   std::vector<Slot> slots_;

@@ -58,7 +58,8 @@ void decode(const Bytes& bytes) {
 
 std::vector<Bytes> lodestone::test::fuzz_seeds() {
   std::vector<Bytes> seeds;
-  for (const TriangleSoup& soup : {tetrahedron(), seam_cube(2), two_material_sphere(1), seam_sphere(8, 6), fan(9, 0.5), grid(4, 0.1, 1)}) {
+  for (const TriangleSoup& soup :
+       {tetrahedron(), seam_cube(2), two_material_sphere(1), seam_sphere(8, 6), fan(9, 0.5), grid(4, 0.1, 1)}) {
     const auto assembled = assemble(soup);
     const auto result = simplify(assembled->mesh);
     StreamOptions options;

@@ -18,14 +18,14 @@ namespace lodestone {
 /// One discrete level of an asset, finest first.
 struct AssetLevel {
   Mesh mesh;
-  Deviation deviation;              ///< measured against the full mesh
-  double curvature_error = 0;       ///< of the metric's own unit
-  std::string stop_reason;          ///< e.g. "faces", "error", "stuck"; goes to extras
+  Deviation deviation;         ///< measured against the full mesh
+  double curvature_error = 0;  ///< of the metric's own unit
+  std::string stop_reason;     ///< e.g. "faces", "error", "stuck"; goes to extras
 };
 
 struct AssetOptions {
   bool draco = true;
-  int draco_position_bits = 14;     ///< 1 to 30, one grid for all levels and meshes
+  int draco_position_bits = 14;  ///< 1 to 30, one grid for all levels and meshes
   int draco_normal_bits = 10;
   int draco_texcoord_bits = 12;
   int draco_generic_bits = 10;
@@ -38,8 +38,8 @@ struct AssetLayout {
   struct Level {
     std::uint64_t byte_offset = 0;  ///< in the binary chunk
     std::uint64_t byte_length = 0;
-    std::uint64_t face_count = 0;   ///< as decoded
-    std::uint64_t vertex_count = 0; ///< as decoded
+    std::uint64_t face_count = 0;    ///< as decoded
+    std::uint64_t vertex_count = 0;  ///< as decoded
   };
   std::vector<Level> levels;
   std::uint64_t stream_bytes = 0;
@@ -60,17 +60,17 @@ Result<EncodedAsset> encode_asset(std::span<const AssetLevel> levels, std::span<
 /// A multi-LOD file as read back.
 struct Asset {
   struct Level {
-    Mesh mesh;                      ///< decoded from Draco or plain accessors
+    Mesh mesh;  ///< decoded from Draco or plain accessors
     std::uint64_t byte_length = 0;
-    double maximum_deviation = 0;   ///< from extras, mesh units; 0 where absent
+    double maximum_deviation = 0;  ///< from extras, mesh units; 0 where absent
     double mean_deviation = 0;
     double rms_deviation = 0;
     double curvature_error = 0;
     double screen_coverage = 0;
     bool draco = false;
   };
-  std::vector<Level> levels;        ///< finest first; one for an ordinary glTF
-  std::vector<std::byte> stream;    ///< empty where the file has none
+  std::vector<Level> levels;      ///< finest first; one for an ordinary glTF
+  std::vector<std::byte> stream;  ///< empty where the file has none
   std::uint64_t total_bytes = 0;
 };
 
