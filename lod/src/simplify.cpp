@@ -8,9 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include <lodestone/core/validate.h>
+
 #include "deviation_bounds.h"
 #include "record_builder.h"
 #include "removal_evaluator.h"
+#include "spatial_order.h"
 
 namespace lodestone {
 namespace {
@@ -232,9 +235,11 @@ SimplifyResult Simplifier::run() {
 }  // namespace
 
 Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options) {
-  auto connectivity = Connectivity::build(mesh);
+  if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+  const Mesh sorted = in_spatial_order(mesh);
+  auto connectivity = Connectivity::build(sorted);
   if (!connectivity) return tl::unexpected(connectivity.error());
-  return Simplifier(mesh, std::move(*connectivity), options).run();
+  return Simplifier(sorted, std::move(*connectivity), options).run();
 }
 
 }  // namespace lodestone
