@@ -42,9 +42,9 @@ class Simplifier {
  private:
   void prepare();
   void evaluate(Index vertex);
-  void choose_candidates();
+  bool choose_candidates();
   bool run_round();
-  bool try_remove(Index vertex);
+  void try_remove(Index vertex);
   void remove(RemovalRecord& record, const Evaluation& evaluation);
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
@@ -61,6 +61,7 @@ class Simplifier {
   std::vector<float> cost_;
   std::vector<Verdict> verdict_;
   std::vector<Choice> choice_;
+  std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
   std::vector<Index> candidates_;
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
@@ -79,6 +80,7 @@ void Simplifier::prepare() {
     state_.original_curvature[v] = static_cast<float>(metric_curvature(options_, state_.curvature[v]));
   cost_.assign(count, kIllegal);
   choice_.assign(count, {kNoChoice, kNoChoice});
+  stale_.assign(count, 0);
   verdict_.assign(count, Verdict::Locked);
   claimed_.assign(count, 0);
   for (Index v = 0; v < count; ++v)
@@ -89,24 +91,35 @@ void Simplifier::evaluate(Index vertex) {
   choice_[vertex] = {kNoChoice, kNoChoice};
   const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
   ++evaluation_count_;
+  stale_[vertex] = 0;
   verdict_[vertex] = evaluation.verdict;
   const bool within = evaluation.curvature_error <= options_.stop.max_curvature_error;
   cost_[vertex] = evaluation.verdict == Verdict::Legal && within ? static_cast<float>(evaluation.cost) : kIllegal;
 }
 
 /// Fills `candidates_` with the cheapest share of the vertices, in order of (cost, number).
-void Simplifier::choose_candidates() {
+///
+/// Costs mostly rise, so a vertex whose surroundings have changed keeps its old cost until that brings it in here; then
+/// it is evaluated anew, and stays if it is still as cheap as the rest. Returns whether any vertex was left to look at.
+bool Simplifier::choose_candidates() {
   candidates_.clear();
   for (Index v = 0; v < cost_.size(); ++v)
     if (cost_[v] < kIllegal) candidates_.push_back(v);
+  if (candidates_.empty()) return false;
   const double narrow = options_.metric == Metric::Hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size())));
   const auto cheaper = [&](Index a, Index b) { return cost_[a] != cost_[b] ? cost_[a] < cost_[b] : a < b; };
-  const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(count);
-  std::nth_element(candidates_.begin(), end, candidates_.end(), cheaper);
-  candidates_.erase(end, candidates_.end());
+  const auto last = candidates_.begin() + static_cast<std::ptrdiff_t>(count - 1);
+  std::nth_element(candidates_.begin(), last, candidates_.end(), cheaper);
+  const float limit = cost_[*last];
+  candidates_.resize(count);
+  for (const Index v : candidates_)
+    if (stale_[v] != 0) evaluate(v);
+  candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit; }),
+                    candidates_.end());
   std::sort(candidates_.begin(), candidates_.end(), cheaper);
+  return true;
 }
 
 bool Simplifier::ring_is_free(Index vertex) {
@@ -138,17 +151,16 @@ void Simplifier::remove(RemovalRecord& record, const Evaluation& evaluation) {
   cost_[record.vertex] = kIllegal;
 }
 
-bool Simplifier::try_remove(Index vertex) {
-  if (!ring_is_free(vertex)) return false;
+void Simplifier::try_remove(Index vertex) {
+  if (!ring_is_free(vertex)) return;
   const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
   // Its surroundings may have changed since it was ranked.
   verdict_[vertex] = evaluation.verdict;
   if (evaluation.verdict != Verdict::Legal || evaluation.curvature_error > options_.stop.max_curvature_error) {
     cost_[vertex] = kIllegal;
-    return false;
+    return;
   }
   remove(record_, evaluation);
-  return true;
 }
 
 bool Simplifier::target_met() {
@@ -159,21 +171,23 @@ bool Simplifier::target_met() {
   return false;
 }
 
-/// Removes the candidates whose rings do not meet and evaluates their rings anew; false where none could go.
+/// Removes the candidates whose rings do not meet; false where none is left to try.
 bool Simplifier::run_round() {
-  choose_candidates();
   dirty_.clear();
-  bool removed_any = false;
+  const bool any_left = choose_candidates();
   for (const Index vertex : candidates_) {
     if (target_met()) break;
-    removed_any = try_remove(vertex) || removed_any;
+    try_remove(vertex);
   }
   for (const Index v : dirty_) state_.curvature[v] = vertex_curvature(state_.mesh, state_.connectivity, VertexId{v});
-  for (const Index v : dirty_) evaluate(v);
+  for (const Index v : dirty_) {
+    stale_[v] = 1;
+    if (cost_[v] == kIllegal) evaluate(v);  // it may be legal now
+  }
   builder_.end_round();
   ++round_;
-  // A candidate found illegal when its turn came is out of the list now: the next round may still get somewhere.
-  return removed_any || !candidates_.empty();
+  // Where nothing could go, costs have risen or candidates have dropped out: only an empty list ends the run.
+  return any_left;
 }
 
 /// Whether a legal removal is left that only the limit on the curvature error forbids.

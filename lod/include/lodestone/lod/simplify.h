@@ -43,7 +43,7 @@ struct SimplifyOptions {
   StopCriteria stop;
   /// Measure the deviation each time this share of the faces has gone. In between, and everywhere where it is 0, bounds
   /// add up what each removal may have moved: safe, but wider than the truth.
-  double measure_step = 0.07;
+  double measure_step = 0.1;
   /// Called between rounds with the share of the work done, 0 to 1; return false to cancel.
   std::function<bool(double)> progress;
 };
