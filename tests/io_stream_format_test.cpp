@@ -3,6 +3,7 @@
 #include <cstring>
 #include <string>
 
+#include <lodestone/io/file.h>
 #include <lodestone/io/read_mesh.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/simplify.h>
@@ -185,6 +186,21 @@ TEST_CASE("a newer major version is unsupported, by its number") {
   REQUIRE_FALSE(mesh);
   CHECK(mesh.error().code == ErrorCode::Unsupported);
   CHECK_THAT(mesh.error().message, contains("version 2.0"));
+}
+
+TEST_CASE("the golden stream of version 1.0 still decodes to the same mesh") {
+  // seam_sphere(12, 9), encoded when version 1.0 was fixed; never to be written again.
+  const auto bytes = read_file(std::filesystem::path(LODESTONE_SOURCE_DIR) / "tests/golden/stream-1.0.lds");
+  REQUIRE(bytes);
+  const ProgressiveMesh mesh = decoded(*bytes);
+  CHECK(mesh.vertex_count() == 98);
+  CHECK(mesh.wedge_vertex.size() == 128);
+  CHECK(mesh.record_count() == 73);
+  CHECK(mesh.round_begin.size() == 61);
+  CHECK(mesh.sectors.size() == 80);
+  Cursor cursor(mesh);
+  cursor.seek(73);
+  CHECK(triangle_set(extract_level(mesh, cursor)) == triangle_set(mesh_of(seam_sphere(12, 9))));
 }
 
 TEST_CASE("invalid meshes and options are refused") {

@@ -214,6 +214,9 @@ Result<void> BuildRun::simplify_input(std::span<const LevelTarget> targets) {
   options.normalisation = normalisation_of(options_.normalisation);
   options.reference = reference_of(options_.reference);
   options.stop = stop_criteria(options_, targets);
+  // Bounds of every record are for the stream, and for finding levels by error.
+  const bool by_error = !targets.empty() && targets.back().kind == TargetKind::Error;
+  if (options_.no_stream && !by_error) options.measure_step = 0;
   options.progress = [this](double share) {
     progress_.update(share);
     return true;

@@ -42,10 +42,14 @@ Mesh current_level(const Mesh& full, const Connectivity& current) {
 }  // namespace
 
 DeviationBounds::DeviationBounds(const Mesh& full, double step)
-    : full_(&full), step_(step),
-      level_(full, measuring_options()),
+    : full_(&full),
+      step_(step),
       measured_faces_(full.face_count()),
-      since_measured_(full.face_count()), since_start_(full.face_count()) {}
+      since_measured_(full.face_count()),
+      since_start_(full.face_count()) {
+  if (step > 0) level_.emplace(full, measuring_options());
+  bound_.reserve(full.vertex_count());
+}
 
 void DeviationBounds::add(const RemovalRecord& record) {
   const double displacement = displacement_bound(*full_, record);
@@ -65,8 +69,8 @@ void DeviationBounds::Chain::add(const RemovalRecord& record, double displacemen
 
 void DeviationBounds::end_round(const Connectivity& current) {
   const auto threshold = static_cast<double>(measured_faces_) * (1 - step_);
-  if (step_ <= 0 || bound_.empty() || static_cast<double>(current.face_count()) > threshold) return;
-  measured_ = level_.measure(current_level(*full_, current), since_measured_.largest).maximum_bound();
+  if (!level_ || bound_.empty() || static_cast<double>(current.face_count()) > threshold) return;
+  measured_ = level_->measure(current_level(*full_, current), since_measured_.largest).maximum_bound();
   measured_faces_ = current.face_count();
   since_measured_.reset();
   bound_.back() = round_up(std::min(static_cast<double>(bound_.back()), measured_));

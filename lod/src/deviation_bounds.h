@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <lodestone/core/connectivity.h>
@@ -26,6 +27,8 @@ class DeviationBounds {
   void end_round(const Connectivity& current);
   /// The bound after the last removal, mesh units.
   double current() const { return bound_.empty() ? 0 : static_cast<double>(bound_.back()); }
+  /// Frees what only further removals would need.
+  void stop_measuring() { level_.reset(); }
   /// One bound for each removal, in order.
   const std::vector<float>& bounds() const { return bound_; }
 
@@ -45,7 +48,7 @@ class DeviationBounds {
 
   const Mesh* full_;
   double step_;
-  LevelDeviation level_;
+  std::optional<LevelDeviation> level_;  // where it measures at all
   std::size_t measured_faces_;
   Chain since_measured_;
   Chain since_start_;

@@ -7,6 +7,11 @@
 #include "canonical_face.h"
 
 namespace lodestone::detail {
+namespace {
+
+constexpr std::size_t kUsualRing = 7;  // a little over the mean
+
+}  // namespace
 
 /// New numbers of the full mesh's wedges, vertices and faces; faces are numbered within their group.
 struct RecordBuilder::Numbering {
@@ -23,6 +28,21 @@ RecordBuilder::RecordBuilder(const Mesh& mesh) : mesh_(&mesh), materials_(mesh.f
   std::sort(materials_.begin(), materials_.end());
   materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
   if (materials_.empty()) materials_.push_back(0);
+  reserve(mesh.vertex_count());
+}
+
+/// Growing would copy; memory that is reserved and not written to costs nothing.
+void RecordBuilder::reserve(std::size_t record_count) {
+  vertex_.reserve(record_count);
+  curvature_error_.reserve(record_count);
+  sector_begin_.reserve(record_count + 1);
+  center_.reserve(record_count);
+  closed_.reserve(record_count);
+  polygon_begin_.reserve(record_count + 1);
+  face_begin_.reserve(record_count + 1);
+  polygons_.reserve(kUsualRing * record_count);
+  faces_.reserve(kUsualRing * record_count);
+  triangles_.reserve(kUsualRing * record_count);
 }
 
 Index RecordBuilder::group_of(Index face) const {
@@ -37,12 +57,12 @@ void RecordBuilder::add(const RemovalRecord& record, double curvature_error) {
     center_.push_back(sector.center);
     closed_.push_back(sector.closed ? 1 : 0);
     polygons_.insert(polygons_.end(), sector.polygon.begin(), sector.polygon.end());
-    polygon_begin_.push_back(polygons_.size());
+    polygon_begin_.push_back(static_cast<Index>(polygons_.size()));
     faces_.insert(faces_.end(), sector.faces.begin(), sector.faces.end());
-    face_begin_.push_back(faces_.size());
+    face_begin_.push_back(static_cast<Index>(faces_.size()));
     triangles_.insert(triangles_.end(), sector.triangles.begin(), sector.triangles.end());
   }
-  sector_begin_.push_back(center_.size());
+  sector_begin_.push_back(static_cast<Index>(center_.size()));
 }
 
 void RecordBuilder::end_round() {

@@ -23,6 +23,7 @@ class RecordBuilder {
 
  private:
   struct Numbering;
+  void reserve(std::size_t record_count);
   Index group_of(Index face) const;
   void list_wedges(Numbering& numbers) const;
   void number_base(const Connectivity& base, ProgressiveMesh& result, Numbering& numbers) const;
@@ -38,12 +39,12 @@ class RecordBuilder {
   std::vector<Index> vertex_;
   std::vector<float> curvature_error_;
   std::vector<std::size_t> round_end_;
-  std::vector<std::size_t> sector_begin_{0};
+  std::vector<Index> sector_begin_{0};
   std::vector<Index> center_;
   std::vector<std::uint8_t> closed_;
-  std::vector<std::size_t> polygon_begin_{0};
+  std::vector<Index> polygon_begin_{0};
   std::vector<Index> polygons_;
-  std::vector<std::size_t> face_begin_{0};
+  std::vector<Index> face_begin_{0};
   std::vector<Index> faces_;
   std::vector<PolygonTriangle> triangles_;
 };

@@ -238,6 +238,7 @@ SimplifyResult Simplifier::run() {
     }
   }
   if (stop_reason_ == StopReason::Stuck && held_by_curvature()) stop_reason_ = StopReason::CurvatureError;
+  bounds_.stop_measuring();
   SimplifyResult result;
   result.stop_reason = stop_reason_;
   result.blocked = count_blocked();

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -143,7 +144,7 @@ class PendingInput {
     if (!file_) return;
     if (::ftruncate(::fileno(file_), 0) != 0) return;
     std::rewind(file_);
-    std::fwrite(bytes.data(), 1, bytes.size(), file_);
+    if (!bytes.empty()) std::fwrite(bytes.data(), 1, bytes.size(), file_);
     std::fflush(file_);
   }
 
@@ -154,9 +155,10 @@ class PendingInput {
 
 void run_one(const Bytes& bytes, PendingInput& pending) {
   pending.set(bytes);
-  // A buffer of exactly this size: the address sanitizer sees the first byte past it.
-  const Bytes exact(bytes);
-  LLVMFuzzerTestOneInput(exact.data(), exact.size());
+  // A buffer of exactly this size: the address sanitizer sees the first byte past it. Never null, as with libFuzzer.
+  const std::unique_ptr<std::uint8_t[]> exact(new std::uint8_t[bytes.size()]);
+  std::copy(bytes.begin(), bytes.end(), exact.get());
+  LLVMFuzzerTestOneInput(exact.get(), bytes.size());
 }
 
 int replay(const Options& options) {
