@@ -11,7 +11,7 @@ auto defect(const std::string& message) { return fail(ErrorCode::Malformed, mess
 
 std::string numbered(const char* thing, std::size_t i) { return std::string(thing) + " " + std::to_string(i); }
 
-Index appended_faces(const SectorHeader& sector) { return sector.closed != 0 ? 2 : 1; }
+Index appended_faces(const SectorHeader& sector) { return static_cast<Index>(appended_face_count(sector.shape)); }
 
 template <class T>
 Index coarsest_within(const std::vector<T>& errors, double limit) {
@@ -110,7 +110,8 @@ Result<void> check_sector(const ProgressiveMesh& mesh, std::size_t record, std::
   const SectorHeader& sector = mesh.sectors[s];
   const std::string name = numbered("record", record);
   const std::uint64_t size = mesh.polygon_begin[s + 1] - mesh.polygon_begin[s];
-  if (size != sector.polygon_size || size < (sector.closed != 0 ? 3U : 2U) || sector.closed > 1)
+  if (size != sector.polygon_size || size < (sector.shape == SectorShape::Open ? 2U : 3U) ||
+      sector.shape > SectorShape::Moved)
     return defect(name + " has a polygon of " + std::to_string(size) + " corners");
   if (sector.group >= mesh.groups.size()) return defect(name + " names " + numbered("group", sector.group));
   if (sector.wedge >= mesh.record_wedge_begin[record + 1] - mesh.record_wedge_begin[record])

@@ -1,5 +1,6 @@
 // Removal in rounds: each round takes the cheapest share of all vertices in order of (cost, number) and removes those
-// whose rings do not meet. Within a round records commute, which keeps the order of work out of the result.
+// whose rings do not meet. Within a round records commute, which keeps the order of work out of the result. Pieces that
+// are nearly used up vanish as a whole once that costs no more than the round's removals.
 // Costs: see removal_evaluator.cpp. Deviation bounds: see deviation_bounds.cpp.
 
 #include <lodestone/lod/simplify.h>
@@ -7,10 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <lodestone/core/validate.h>
 
+#include "creases.h"
 #include "deviation_bounds.h"
+#include "pieces.h"
 #include "record_builder.h"
 #include "removal_evaluator.h"
 #include "spatial_order.h"
@@ -26,6 +30,12 @@ constexpr double kNarrowShare = 0.05;
 constexpr double kNarrowPureShare = 0.02;  // curvature alone leaves many ties, and their order matters
 constexpr std::size_t kNarrowBelow = 8000;
 
+// What cannot go below this by removals of vertices (a tetrahedron, a card) may vanish as a whole.
+constexpr std::size_t kSmallPiece = 16;
+
+// How many of the vertices left are looked at, along the curve and each way, for one near a piece that vanishes.
+constexpr int kNearCandidates = 32;
+
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
 
 class Simplifier {
@@ -34,8 +44,9 @@ class Simplifier {
       : options_(options),
         state_{mesh, std::move(connectivity), CarriedPoints(mesh), {}, {}, {}},
         evaluator_(state_, options_),
-        builder_(mesh),
-        bounds_(mesh, options.measure_step) {}
+        builder_(mesh, state_.connectivity),
+        bounds_(mesh, options.measure_step),
+        pieces_(mesh, state_.connectivity) {}
 
   SimplifyResult run();
 
@@ -45,11 +56,19 @@ class Simplifier {
   bool choose_candidates();
   bool run_round();
   void try_remove(Index vertex);
-  void remove(RemovalRecord& record, const Evaluation& evaluation);
+  void remove(const Evaluation& evaluation);
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
+  void update_dirty();
   bool target_met();
-  bool held_by_curvature() const;
+
+  void price_pieces();
+  bool remove_pieces(bool stuck);
+  std::vector<Index> choose_pieces(bool stuck);
+  void remove_piece(Index piece);
+  Index vertex_left_near(Index vertex, Index piece) const;
+  void write_vanished();
+
   BlockedCounts count_blocked() const;
 
   SimplifyOptions options_;
@@ -58,7 +77,14 @@ class Simplifier {
   RecordBuilder builder_;
   DeviationBounds bounds_;
 
-  std::vector<float> cost_;
+  Pieces pieces_;
+  std::vector<float> piece_cost_;
+  std::vector<float> piece_error_;                        // curvature error, in the metric's own unit
+  std::vector<std::vector<RemovalRecord>> vanished_;      // the pieces of this round, to be written
+  std::vector<float> vanished_error_;
+  float limit_ = 0;  // the cost that bounds this round's removals
+
+  std::vector<float> cost_;  // by vertex; of several copies the first stands for all
   std::vector<Verdict> verdict_;
   std::vector<Choice> choice_;
   std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
@@ -66,7 +92,7 @@ class Simplifier {
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
   Index round_ = 0;
-  RemovalRecord record_;
+  Removal removal_;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
   std::size_t evaluation_count_ = 0;
@@ -84,13 +110,18 @@ void Simplifier::prepare() {
   verdict_.assign(count, Verdict::Locked);
   claimed_.assign(count, 0);
   for (Index v = 0; v < count; ++v)
-    if (state_.connectivity.has_vertex(v)) evaluate(v);
+    if (state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
+  price_pieces();
 }
 
 void Simplifier::evaluate(Index vertex) {
   choice_[vertex] = {kNoChoice, kNoChoice};
-  const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
+  Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
   ++evaluation_count_;
+  if (!options_.importance.empty()) {
+    evaluation.cost *= static_cast<double>(options_.importance[vertex]);
+    if (options_.importance[vertex] >= kLockingImportance) evaluation.verdict = Verdict::Locked;
+  }
   stale_[vertex] = 0;
   verdict_[vertex] = evaluation.verdict;
   const bool within = evaluation.curvature_error <= options_.stop.max_curvature_error;
@@ -112,55 +143,66 @@ bool Simplifier::choose_candidates() {
   const auto cheaper = [&](Index a, Index b) { return cost_[a] != cost_[b] ? cost_[a] < cost_[b] : a < b; };
   const auto last = candidates_.begin() + static_cast<std::ptrdiff_t>(count - 1);
   std::nth_element(candidates_.begin(), last, candidates_.end(), cheaper);
-  const float limit = cost_[*last];
+  limit_ = cost_[*last];
   candidates_.resize(count);
   for (const Index v : candidates_)
     if (stale_[v] != 0) evaluate(v);
-  candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit; }),
+  candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit_; }),
                     candidates_.end());
   std::sort(candidates_.begin(), candidates_.end(), cheaper);
   return true;
 }
 
+/// Whether no removal of this round has touched the stars of the vertex and its copies.
 bool Simplifier::ring_is_free(Index vertex) {
-  if (claimed_[vertex] == round_ + 1) return false;
-  state_.connectivity.gather_star(vertex, star_);
-  return std::none_of(star_.corners.begin(), star_.corners.end(), [&](Index corner) {
-    return claimed_[state_.connectivity.vertex(next_corner(corner))] == round_ + 1 ||
-           claimed_[state_.connectivity.vertex(previous_corner(corner))] == round_ + 1;
-  });
+  const Connectivity& mesh = state_.connectivity;
+  const auto is_claimed = [&](Index v) { return claimed_[mesh.site(v)] == round_ + 1; };
+  if (is_claimed(vertex)) return false;
+  for (Index copy = vertex;;) {
+    mesh.gather_star(copy, star_);
+    for (const Index corner : star_.corners)
+      if (is_claimed(mesh.vertex(next_corner(corner))) || is_claimed(mesh.vertex(previous_corner(corner)))) return false;
+    copy = mesh.next_copy(copy);
+    if (copy == vertex) return true;
+  }
 }
 
 void Simplifier::claim_ring(const RemovalRecord& record) {
-  claimed_[record.vertex] = round_ + 1;
+  const Connectivity& mesh = state_.connectivity;
+  claimed_[mesh.site(record.vertex)] = round_ + 1;
   for (const SectorPatch& sector : record.sectors)
     for (const Index wedge : sector.polygon) {
-      const Index v = state_.connectivity.vertex_of_wedge(wedge);
-      if (claimed_[v] == round_ + 1) continue;
-      claimed_[v] = round_ + 1;
-      dirty_.push_back(v);
+      const Index site = mesh.site(mesh.vertex_of_wedge(wedge));
+      if (claimed_[site] == round_ + 1) continue;
+      claimed_[site] = round_ + 1;
+      dirty_.push_back(site);
     }
 }
 
-void Simplifier::remove(RemovalRecord& record, const Evaluation& evaluation) {
-  claim_ring(record);
-  bounds_.add(record);
-  remove_vertex(state_.connectivity, record);
-  carry_memory(state_, record);
-  builder_.add(record, evaluation.curvature_error);
-  cost_[record.vertex] = kIllegal;
+void Simplifier::remove(const Evaluation& evaluation) {
+  const std::size_t before = state_.connectivity.face_count();
+  for (RemovalRecord& record : removal_) {
+    claim_ring(record);
+    remove_vertex(state_.connectivity, record);
+    carry_memory(state_, record);
+  }
+  bounds_.add(removal_);
+  builder_.add(removal_, evaluation.curvature_error);
+  const Index vertex = removal_.front().vertex;
+  pieces_.lose_faces(pieces_.piece_of(vertex), before - state_.connectivity.face_count());
+  cost_[state_.connectivity.site(vertex)] = kIllegal;
 }
 
 void Simplifier::try_remove(Index vertex) {
   if (!ring_is_free(vertex)) return;
-  const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
+  const Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
   // Its surroundings may have changed since it was ranked.
   verdict_[vertex] = evaluation.verdict;
   if (evaluation.verdict != Verdict::Legal || evaluation.curvature_error > options_.stop.max_curvature_error) {
     cost_[vertex] = kIllegal;
     return;
   }
-  remove(record_, evaluation);
+  remove(evaluation);
 }
 
 bool Simplifier::target_met() {
@@ -171,7 +213,22 @@ bool Simplifier::target_met() {
   return false;
 }
 
-/// Removes the candidates whose rings do not meet; false where none is left to try.
+/// Looks anew at what lies around this round's removals.
+void Simplifier::update_dirty() {
+  const Connectivity& mesh = state_.connectivity;
+  for (const Index site : dirty_)
+    for (Index copy = site;;) {
+      state_.curvature[copy] = vertex_curvature(state_.mesh, mesh, VertexId{copy});
+      copy = mesh.next_copy(copy);
+      if (copy == site) break;
+    }
+  for (const Index site : dirty_) {
+    stale_[site] = 1;
+    if (cost_[site] == kIllegal) evaluate(site);  // it may be legal now
+  }
+}
+
+/// Removes the candidates whose rings do not meet, and pieces that cost no more; false where nothing is left to try.
 bool Simplifier::run_round() {
   dirty_.clear();
   const bool any_left = choose_candidates();
@@ -179,30 +236,126 @@ bool Simplifier::run_round() {
     if (target_met()) break;
     try_remove(vertex);
   }
-  for (const Index v : dirty_) state_.curvature[v] = vertex_curvature(state_.mesh, state_.connectivity, VertexId{v});
-  for (const Index v : dirty_) {
-    stale_[v] = 1;
-    if (cost_[v] == kIllegal) evaluate(v);  // it may be legal now
-  }
+  update_dirty();
   builder_.end_round();
   ++round_;
   // Where nothing could go, costs have risen or candidates have dropped out: only an empty list ends the run.
-  return any_left;
+  return remove_pieces(!any_left) || any_left;
 }
 
-/// Whether a legal removal is left that only the limit on the curvature error forbids.
-bool Simplifier::held_by_curvature() const {
-  for (Index v = 0; v < verdict_.size(); ++v)
-    if (state_.connectivity.has_vertex(v) && verdict_[v] == Verdict::Legal) return true;
-  return false;
+/// Works out what the loss of each piece costs: its width for every point it stands for, and the curvature that goes
+/// with it.
+void Simplifier::price_pieces() {
+  for (Index piece = 0; piece < pieces_.count(); ++piece) {
+    float error = 0;
+    float importance = options_.importance.empty() ? 1.0F : 0.0F;
+    bool open = false;
+    for (const Index v : pieces_.vertices(piece)) {
+      error = std::max(error, std::abs(state_.original_curvature[v]));
+      if (!options_.importance.empty()) importance = std::max(importance, options_.importance[v]);
+      if (!options_.lock_border || !state_.connectivity.has_vertex(v)) continue;
+      state_.connectivity.gather_star(v, star_);
+      open = open || !star_.closed;
+    }
+    const double loss = pieces_.loss(state_.mesh, piece);
+    const bool is_hybrid = options_.metric == Metric::Hybrid;
+    double cost = is_hybrid ? std::pow(loss, 0.9) * std::pow(static_cast<double>(error), 0.1) : static_cast<double>(error);
+    cost *= static_cast<double>(importance);
+    const bool stays = open || importance >= kLockingImportance || error > options_.stop.max_curvature_error;
+    piece_cost_.push_back(stays ? kIllegal : static_cast<float>(cost));
+    piece_error_.push_back(error);
+  }
+}
+
+/// The pieces to go, cheapest first: small ones within the round's limit, or any where nothing else can be removed.
+std::vector<Index> Simplifier::choose_pieces(bool stuck) {
+  std::vector<Index> chosen;
+  for (Index piece = 0; piece < pieces_.count(); ++piece) {
+    if (pieces_.face_count(piece) == 0 || piece_cost_[piece] == kIllegal) continue;
+    if (stuck || (pieces_.face_count(piece) <= kSmallPiece && piece_cost_[piece] <= limit_)) chosen.push_back(piece);
+  }
+  std::sort(chosen.begin(), chosen.end(), [&](Index a, Index b) {
+    return piece_cost_[a] != piece_cost_[b] ? piece_cost_[a] < piece_cost_[b] : a < b;
+  });
+  return chosen;
+}
+
+bool Simplifier::remove_pieces(bool stuck) {
+  for (const Index piece : choose_pieces(stuck)) {
+    if (target_met() || (pieces_.left() == 1 && !options_.vanish)) break;
+    remove_piece(piece);
+  }
+  const bool any = !vanished_.empty();
+  write_vanished();
+  return any;
+}
+
+void Simplifier::remove_piece(Index piece) {
+  Index seed = kNoIndex;
+  for (const Index v : pieces_.vertices(piece)) {
+    cost_[v] = kIllegal;
+    if (seed == kNoIndex && state_.connectivity.has_vertex(v)) seed = v;
+  }
+  std::vector<RemovalRecord> records = remove_component(state_.connectivity, seed);
+  pieces_.vanish(piece);
+  const Index near = vertex_left_near(seed, piece);
+  if (near == kNoIndex) {
+    bounds_.add_last();
+  } else {
+    double reach = 0;
+    for (const RemovalRecord& record : records)
+      reach = std::max(reach, length(Vec3(state_.mesh.positions[record.vertex]) - Vec3(state_.mesh.positions[near])));
+    bounds_.add_vanished(records, face_of_corner(state_.connectivity.corner_at(near)), reach);
+  }
+  vanished_.push_back(std::move(records));
+  vanished_error_.push_back(piece_error_[piece]);
+}
+
+/// A vertex that is left near another: the nearest of some, going both ways along the curve in which vertices stand.
+Index Simplifier::vertex_left_near(Index vertex, Index piece) const {
+  Index best = kNoIndex;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](Index v) {
+    if (!state_.connectivity.has_vertex(v) || pieces_.piece_of(v) == piece) return false;
+    const double distance = squared_length(Vec3(state_.mesh.positions[v]) - Vec3(state_.mesh.positions[vertex]));
+    if (distance < least) least = distance, best = v;
+    return true;
+  };
+  int found = 0;
+  for (Index v = vertex; v-- > 0 && found < kNearCandidates;) found += consider(v) ? 1 : 0;
+  found = 0;
+  for (Index v = vertex + 1; v < state_.mesh.vertex_count() && found < kNearCandidates; ++v) found += consider(v) ? 1 : 0;
+  return best;
+}
+
+/// Writes the records of vanished pieces: the first vertices of all, then the second ones, so that rounds commute.
+void Simplifier::write_vanished() {
+  std::vector<std::size_t> next(vanished_.size(), 0);
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t i = 0; i < vanished_.size(); ++i) {
+      const std::vector<RemovalRecord>& records = vanished_[i];
+      const std::size_t begin = next[i];
+      if (begin == records.size()) continue;
+      const auto site = [&](std::size_t k) { return state_.connectivity.site(records[k].vertex); };
+      while (next[i] < records.size() && site(next[i]) == site(begin)) ++next[i];
+      builder_.add(std::span(records).subspan(begin, next[i] - begin), static_cast<double>(vanished_error_[i]));
+      bounds_.repeat();
+      any = true;
+    }
+    builder_.end_round();
+  }
+  vanished_.clear();
+  vanished_error_.clear();
 }
 
 BlockedCounts Simplifier::count_blocked() const {
   BlockedCounts blocked;
   for (Index v = 0; v < verdict_.size(); ++v) {
-    if (!state_.connectivity.has_vertex(v)) continue;
+    if (!state_.connectivity.has_vertex(v) || state_.connectivity.site(v) != v) continue;
     switch (verdict_[v]) {
       case Verdict::Legal:
+        ++blocked.error;
         break;
       case Verdict::Locked:
         ++blocked.locked;
@@ -237,13 +390,13 @@ SimplifyResult Simplifier::run() {
       break;
     }
   }
-  if (stop_reason_ == StopReason::Stuck && held_by_curvature()) stop_reason_ = StopReason::CurvatureError;
-  bounds_.stop_measuring();
   SimplifyResult result;
-  result.stop_reason = stop_reason_;
   result.blocked = count_blocked();
+  if (stop_reason_ == StopReason::Stuck && result.blocked.error > 0) stop_reason_ = StopReason::CurvatureError;
+  bounds_.stop_measuring();
+  result.stop_reason = stop_reason_;
   result.evaluation_count = evaluation_count_;
-  result.mesh = builder_.finish(state_.connectivity, bounds_.bounds());
+  result.mesh = builder_.finish(bounds_.bounds());
   return result;
 }
 
@@ -251,10 +404,17 @@ SimplifyResult Simplifier::run() {
 
 Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options) {
   if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-  const Mesh sorted = in_spatial_order(mesh);
+  if (!options.importance.empty() && options.importance.size() != mesh.vertex_count())
+    return fail(ErrorCode::InvalidArgument, "importance has " + std::to_string(options.importance.size()) +
+                                                " values for " + std::to_string(mesh.vertex_count()) + " vertices");
+  std::vector<Index> source_vertex;
+  const Mesh sorted = in_spatial_order(mesh, source_vertex);
   auto connectivity = Connectivity::build(sorted);
   if (!connectivity) return tl::unexpected(connectivity.error());
-  return Simplifier(sorted, std::move(*connectivity), options).run();
+  mark_creases(sorted, options, *connectivity);
+  SimplifyOptions local = options;
+  for (std::size_t v = 0; v < local.importance.size(); ++v) local.importance[v] = options.importance[source_vertex[v]];
+  return Simplifier(sorted, std::move(*connectivity), local).run();
 }
 
 }  // namespace lodestone
