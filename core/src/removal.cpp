@@ -317,6 +317,7 @@ std::vector<Index> component_faces(const Connectivity& mesh, Index vertex) {
 
 SectorPatch lone_face(const Connectivity& mesh, Index corner) {
   SectorPatch sector;
+  sector.shape = SectorShape::Lone;
   sector.center = mesh.wedge(corner);
   sector.polygon = {mesh.wedge(next_corner(corner)), mesh.wedge(previous_corner(corner))};
   sector.faces = {face_of_corner(corner)};
@@ -344,6 +345,12 @@ std::vector<RemovalRecord> remove_component(Connectivity& mesh, Index vertex) {
     }
     if (gone.insert(face_of_corner(corner)).second) records.back().sectors.push_back(lone_face(mesh, corner));
   }
+  // All copies of a vertex come last together, or none.
+  std::unordered_set<Index> with_faces;
+  for (const RemovalRecord& record : records)
+    if (!record.sectors.empty()) with_faces.insert(mesh.site(record.vertex));
+  std::stable_partition(records.begin(), records.end(),
+                        [&](const RemovalRecord& record) { return with_faces.contains(mesh.site(record.vertex)); });
   const PatchAccess access{mesh};
   for (const Index face : faces) access.kill_face(face);
   for (const RemovalRecord& record : records) access.set_anchor(record.vertex, kNoIndex);

@@ -259,9 +259,9 @@ class StreamDecoder {
   Result<void> read_sector(std::uint32_t wedge_count, ChunkValues& values) {
     const std::uint32_t size = values[kPolygonSizes].next(), group = values[kGroups].next(),
                         centre = values[kCentres].next();
-    const std::uint32_t shapes = start_.directory.version_major == 1 ? 2 : 3;  // version 1 had no moved sectors
+    const std::uint32_t shapes = start_.directory.version_major == 1 ? 2 : 4;  // version 1 had two
     const auto shape = static_cast<SectorShape>(centre % shapes);
-    if (size < (shape == SectorShape::Open ? 2u : 3u) || size > kMaxPolygonSize)
+    if (size < (shape == SectorShape::Open || shape == SectorShape::Lone ? 2u : 3u) || size > kMaxPolygonSize)
       return broken(text("polygon of ", size, " corners"));
     if (group >= mesh_.groups.size()) return broken(text("group ", group, " of ", mesh_.groups.size()));
     if (centre / shapes >= wedge_count) return broken(text("wedge ", centre / shapes, " of ", wedge_count));

@@ -9,6 +9,9 @@
 namespace lodestone::detail {
 namespace {
 
+// How far a piece that vanishes was from what is left is bounded roughly, so it is measured sooner.
+constexpr double kStepAfterVanishing = 0.01;
+
 DeviationOptions measuring_options() {
   DeviationOptions options;
   options.relative_tolerance = 0.01;
@@ -61,6 +64,7 @@ void DeviationBounds::add(std::span<const RemovalRecord> copies) {
 
 void DeviationBounds::add_vanished(std::span<const RemovalRecord> records, Index face, double reach) {
   for (Chain* chain : {&since_measured_, &since_start_}) chain->add_vanished(records, face, reach);
+  vanished_ = true;
 }
 
 /// What a sector's faces stood for moves with the new ones; where it has none, with those that lie at its new edge.
@@ -89,11 +93,13 @@ void DeviationBounds::Chain::add_vanished(std::span<const RemovalRecord> records
 }
 
 void DeviationBounds::end_round(const Connectivity& current) {
-  const auto threshold = static_cast<double>(measured_faces_) * (1 - step_);
+  const double step = vanished_ ? std::min(step_, kStepAfterVanishing) : step_;
+  const auto threshold = static_cast<double>(measured_faces_) * (1 - step);
   if (!level_ || bound_.empty() || last_ > 0 || static_cast<double>(current.face_count()) > threshold) return;
   measured_ = level_->measure(current_level(*full_, current), since_measured_.largest).maximum_bound();
   measured_faces_ = current.face_count();
   since_measured_.reset();
+  vanished_ = false;
   if (last_ == 0) bound_.back() = round_up(std::min(static_cast<double>(bound_.back()), measured_));
 }
 

@@ -66,6 +66,7 @@ class DeviationBounds {
   Chain since_measured_;
   Chain since_start_;
   double measured_ = 0;  // bound of the last measured mesh
+  bool vanished_ = false;  // whether a piece has since it was measured
   double last_ = 0;      // > 0 once nothing is left
   std::vector<float> bound_;
 };

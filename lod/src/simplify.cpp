@@ -67,7 +67,7 @@ class Simplifier {
   std::vector<Index> choose_pieces(bool stuck);
   void remove_piece(Index piece);
   Index vertex_left_near(Index vertex, Index piece) const;
-  void write_vanished();
+  
 
   BlockedCounts count_blocked() const;
 
@@ -80,8 +80,7 @@ class Simplifier {
   Pieces pieces_;
   std::vector<float> piece_cost_;
   std::vector<float> piece_error_;                        // curvature error, in the metric's own unit
-  std::vector<std::vector<RemovalRecord>> vanished_;      // the pieces of this round, to be written
-  std::vector<float> vanished_error_;
+  std::vector<std::uint8_t> piece_moves_;                 // whether any of its vertices can be removed
   float limit_ = 0;  // the cost that bounds this round's removals
 
   std::vector<float> cost_;  // by vertex; of several copies the first stands for all
@@ -134,8 +133,12 @@ void Simplifier::evaluate(Index vertex) {
 /// it is evaluated anew, and stays if it is still as cheap as the rest. Returns whether any vertex was left to look at.
 bool Simplifier::choose_candidates() {
   candidates_.clear();
-  for (Index v = 0; v < cost_.size(); ++v)
-    if (cost_[v] < kIllegal) candidates_.push_back(v);
+  std::fill(piece_moves_.begin(), piece_moves_.end(), std::uint8_t{0});
+  for (Index v = 0; v < cost_.size(); ++v) {
+    if (cost_[v] == kIllegal) continue;
+    candidates_.push_back(v);
+    piece_moves_[pieces_.piece_of(v)] = 1;
+  }
   if (candidates_.empty()) return false;
   const double narrow = options_.metric == Metric::Hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
@@ -246,6 +249,7 @@ bool Simplifier::run_round() {
 /// Works out what the loss of each piece costs: its width for every point it stands for, and the curvature that goes
 /// with it.
 void Simplifier::price_pieces() {
+  piece_moves_.assign(pieces_.count(), 1);
   for (Index piece = 0; piece < pieces_.count(); ++piece) {
     float error = 0;
     float importance = options_.importance.empty() ? 1.0F : 0.0F;
@@ -267,12 +271,14 @@ void Simplifier::price_pieces() {
   }
 }
 
-/// The pieces to go, cheapest first: small ones within the round's limit, or any where nothing else can be removed.
+/// The pieces to go, cheapest first: those within the round's limit that are small or cannot be simplified further, or
+/// any where nothing else can be removed.
 std::vector<Index> Simplifier::choose_pieces(bool stuck) {
   std::vector<Index> chosen;
   for (Index piece = 0; piece < pieces_.count(); ++piece) {
     if (pieces_.face_count(piece) == 0 || piece_cost_[piece] == kIllegal) continue;
-    if (stuck || (pieces_.face_count(piece) <= kSmallPiece && piece_cost_[piece] <= limit_)) chosen.push_back(piece);
+    const bool used_up = pieces_.face_count(piece) <= kSmallPiece || piece_moves_[piece] == 0;
+    if (stuck || (used_up && piece_cost_[piece] <= limit_)) chosen.push_back(piece);
   }
   std::sort(chosen.begin(), chosen.end(), [&](Index a, Index b) {
     return piece_cost_[a] != piece_cost_[b] ? piece_cost_[a] < piece_cost_[b] : a < b;
@@ -281,12 +287,12 @@ std::vector<Index> Simplifier::choose_pieces(bool stuck) {
 }
 
 bool Simplifier::remove_pieces(bool stuck) {
+  bool any = false;
   for (const Index piece : choose_pieces(stuck)) {
     if (target_met() || (pieces_.left() == 1 && !options_.vanish)) break;
     remove_piece(piece);
+    any = true;
   }
-  const bool any = !vanished_.empty();
-  write_vanished();
   return any;
 }
 
@@ -296,7 +302,7 @@ void Simplifier::remove_piece(Index piece) {
     cost_[v] = kIllegal;
     if (seed == kNoIndex && state_.connectivity.has_vertex(v)) seed = v;
   }
-  std::vector<RemovalRecord> records = remove_component(state_.connectivity, seed);
+  const std::vector<RemovalRecord> records = remove_component(state_.connectivity, seed);
   pieces_.vanish(piece);
   const Index near = vertex_left_near(seed, piece);
   if (near == kNoIndex) {
@@ -307,8 +313,14 @@ void Simplifier::remove_piece(Index piece) {
       reach = std::max(reach, length(Vec3(state_.mesh.positions[record.vertex]) - Vec3(state_.mesh.positions[near])));
     bounds_.add_vanished(records, face_of_corner(state_.connectivity.corner_at(near)), reach);
   }
-  vanished_.push_back(std::move(records));
-  vanished_error_.push_back(piece_error_[piece]);
+  // One after the other: copies of a vertex make one record, and each record stands in a round of its own.
+  const auto site = [&](std::size_t i) { return state_.connectivity.site(records[i].vertex); };
+  for (std::size_t i = 0, j = 0; i < records.size(); i = j) {
+    while (j < records.size() && site(j) == site(i)) ++j;
+    builder_.add(std::span(records).subspan(i, j - i), static_cast<double>(piece_error_[piece]));
+    bounds_.repeat();
+    builder_.end_round();
+  }
 }
 
 /// A vertex that is left near another: the nearest of some, going both ways along the curve in which vertices stand.
@@ -326,27 +338,6 @@ Index Simplifier::vertex_left_near(Index vertex, Index piece) const {
   found = 0;
   for (Index v = vertex + 1; v < state_.mesh.vertex_count() && found < kNearCandidates; ++v) found += consider(v) ? 1 : 0;
   return best;
-}
-
-/// Writes the records of vanished pieces: the first vertices of all, then the second ones, so that rounds commute.
-void Simplifier::write_vanished() {
-  std::vector<std::size_t> next(vanished_.size(), 0);
-  for (bool any = true; any;) {
-    any = false;
-    for (std::size_t i = 0; i < vanished_.size(); ++i) {
-      const std::vector<RemovalRecord>& records = vanished_[i];
-      const std::size_t begin = next[i];
-      if (begin == records.size()) continue;
-      const auto site = [&](std::size_t k) { return state_.connectivity.site(records[k].vertex); };
-      while (next[i] < records.size() && site(next[i]) == site(begin)) ++next[i];
-      builder_.add(std::span(records).subspan(begin, next[i] - begin), static_cast<double>(vanished_error_[i]));
-      bounds_.repeat();
-      any = true;
-    }
-    builder_.end_round();
-  }
-  vanished_.clear();
-  vanished_error_.clear();
 }
 
 BlockedCounts Simplifier::count_blocked() const {

@@ -101,15 +101,4 @@ inline double texture_area(const Mesh& mesh, Index face) {
   return (at(a + 1, 0) - at(a, 0)) * (at(a + 2, 1) - at(a, 1)) - (at(a + 1, 1) - at(a, 1)) * (at(a + 2, 0) - at(a, 0));
 }
 
-/// Whether nothing is half-way gone at a position: records that let pieces vanish come one for each vertex.
-inline bool is_whole(const ProgressiveMesh& mesh, Index position) {
-  const auto vanishes = [&](Index record) {
-    for (Index s = mesh.sector_begin[record]; s < mesh.sector_begin[record + 1]; ++s)
-      if (mesh.sectors[s].polygon_size > 2) return false;
-    return true;
-  };
-  if (position == 0 || position == mesh.record_count()) return true;
-  return !vanishes(position - 1) || !vanishes(position);
-}
-
 }  // namespace lodestone::test

@@ -14,6 +14,7 @@ enum class SectorShape : std::uint8_t {
   Open,    ///< p0 … p(m−1) run from one constrained spoke to the next: m − 1 fine faces, m − 2 coarse ones
   Closed,  ///< p0 … p(m−1) are the whole ring: m fine faces, m − 2 coarse ones
   Moved,   ///< p(m−1) is the vertex v moves to, away from this sector; the others as in Open: m − 2 faces before and after
+  Lone,    ///< a face of a piece that vanishes as a whole: p0 p1, one fine face, no coarse one
 };
 
 /// One side of a removal; the rules are those of `SectorHeader` in lod: coarse face i takes the place of fine face i.
@@ -64,8 +65,8 @@ void restore_vertex(Connectivity& mesh, const RemovalRecord& record);
 /// Removes everything that hangs together with a vertex, over edges and over copies of vertices.
 ///
 /// Returns one record for each vertex and copy, copies of one vertex next to each other. A record's sectors are its
-/// faces that no earlier record has: open polygons of two corners, without coarse faces. Only whole components can go
-/// this way, so there is no function that undoes it; a `Cursor` over the records goes both ways.
+/// faces that no earlier record has, each a lone one; vertices without any come last. Only whole components can go this
+/// way, so there is no function that undoes it; a `Cursor` over the records goes both ways.
 std::vector<RemovalRecord> remove_component(Connectivity& mesh, Index vertex);
 
 }  // namespace lodestone

@@ -40,7 +40,7 @@ struct StopCriteria {
 /// How much differences of attributes count beside distances: factors, 0 for not at all. What is compared is the
 /// attribute of a removed vertex with that of the surface in its place. A vertex's own attributes never change.
 struct AttributeWeights {
-  double normal = 0.5;    ///< NORMAL: difference of unit vectors, times the star's radius
+  double normal = 0.25;   ///< NORMAL: difference of unit vectors, times the star's radius
   double texcoord = 1;    ///< TEXCOORD_n: how far the texture slides over the surface
   double color = 0.5;     ///< COLOR_n: difference of values, times the star's radius
   double skin = 1;        ///< JOINTS_n, WEIGHTS_n: share of weight that goes to other joints, times the star's radius
