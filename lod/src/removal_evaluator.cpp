@@ -229,10 +229,27 @@ bool RemovalEvaluator::gather_links(Index vertex) {
   }
   for (const Index v : ring_vertex_) ring_of_site_[mesh.site(v)] = kNoIndex;
   if (ring_size() == 3 && star_.closed) {
-    const Index outer = mesh.opposite(fine_corner_[0]);
-    simple = simple && !(outer != kNoIndex && mesh.vertex(outer) == ring_vertex_[2]);
+    simple = simple && !has_face_over_ring();
   }
   return simple && ring_vertex_[0] != vertex;
+}
+
+/// Whether a face joins the three vertices of the ring, in any sheet.
+bool RemovalEvaluator::has_face_over_ring() const {
+  const Connectivity& mesh = state_->connectivity;
+  const auto site = [&](std::size_t i) { return mesh.site(ring_vertex_[i]); };
+  for (Index copy = ring_vertex_[0];;) {
+    const Index start = mesh.corner_at(copy);
+    for (Index corner = start; corner != kNoIndex;) {
+      const Index a = mesh.site(mesh.vertex(next_corner(corner)));
+      const Index b = mesh.site(mesh.vertex(previous_corner(corner)));
+      if ((a == site(1) && b == site(2)) || (a == site(2) && b == site(1))) return true;
+      corner = mesh.swing_left(corner);
+      if (corner == start) break;
+    }
+    copy = mesh.next_copy(copy);
+    if (copy == ring_vertex_[0]) return false;
+  }
 }
 
 /// Whether the vertex may move along a spoke at all: a border vertex only along the border, and a vertex at which one
@@ -424,12 +441,13 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
       continue;
     }
     at_rim = true;
+    if (any_angle_) continue;
     const Vec3& fine = fine_normal_[sector.ring_begin + from];
     const double cosine = dot(entry.normal, fine);
     if (cosine < 0 || cosine * cosine < kMinNormalCosine * kMinNormalCosine * square_area * squared_length(fine))
       return Verdict::Flip;
   }
-  if (!at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Flip;
+  if (!any_angle_ && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Flip;
   return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Flip : Verdict::Legal;
 }
 

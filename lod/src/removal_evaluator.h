@@ -52,6 +52,10 @@ class RemovalEvaluator {
   /// other is tried.
   Evaluation evaluate(Index vertex, Removal& removal, Choice& choice);
 
+  /// From now on lets faces turn by any angle: where nothing else is left to do, a worse shape is better than too many
+  /// faces. Textures still must not turn over.
+  void allow_any_angle() { any_angle_ = true; }
+
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
   struct Triangle {
@@ -95,6 +99,7 @@ class RemovalEvaluator {
   void gather_ring();
   void gather_normals();
   bool gather_links(Index vertex);
+  bool has_face_over_ring() const;
   void gather_points(const Sector& sector);
   void gather_outside_curvature();
   bool is_target(std::size_t spoke) const;
@@ -157,6 +162,7 @@ class RemovalEvaluator {
   AttributeCost attributes_;
   std::vector<Index> wedge_begin_;     // by vertex: its wedges in vertex_wedges_; empty without seams
   std::vector<Index> vertex_wedges_;
+  bool any_angle_ = false;
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;

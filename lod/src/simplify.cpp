@@ -60,6 +60,7 @@ class Simplifier {
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
   void update_dirty();
+  bool allow_any_angle();
   bool target_met();
 
   void price_pieces();
@@ -91,6 +92,7 @@ class Simplifier {
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
   Index round_ = 0;
+  bool any_angle_ = false;
   Removal removal_;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
@@ -246,6 +248,16 @@ bool Simplifier::run_round() {
   return remove_pieces(!any_left) || any_left;
 }
 
+/// Where nothing else can be removed: drops the limit on how far faces may turn. Returns whether that is news.
+bool Simplifier::allow_any_angle() {
+  if (any_angle_) return false;
+  any_angle_ = true;
+  evaluator_.allow_any_angle();
+  for (Index v = 0; v < cost_.size(); ++v)
+    if (verdict_[v] == Verdict::Flip && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
+  return true;
+}
+
 /// Works out what the loss of each piece costs: its width for every point it stands for, and the curvature that goes
 /// with it.
 void Simplifier::price_pieces() {
@@ -369,7 +381,7 @@ SimplifyResult Simplifier::run() {
   prepare();
   const double full_faces = static_cast<double>(state_.connectivity.face_count());
   while (!target_met()) {
-    if (!run_round()) break;
+    if (!run_round() && !allow_any_angle()) break;
     bounds_.end_round(state_.connectivity);
     if (bounds_.current() > options_.stop.max_deviation) {
       stop_reason_ = StopReason::Deviation;
