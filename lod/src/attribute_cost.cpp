@@ -6,49 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
+
+#include "attribute_values.h"
 
 namespace lodestone::detail {
 namespace {
-
-template <class T>
-void append_as_floats(const Attribute& attribute, float largest, std::vector<float>& values) {
-  const std::size_t count = attribute.data.size() / sizeof(T);
-  values.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    T value;
-    std::memcpy(&value, &attribute.data[i * sizeof(T)], sizeof(T));
-    values[i] = attribute.normalized ? static_cast<float>(value) / largest : static_cast<float>(value);
-  }
-}
-
-std::vector<float> as_floats(const Attribute& attribute) {
-  std::vector<float> values;
-  switch (attribute.type) {
-    case ComponentType::Int8:
-      append_as_floats<std::int8_t>(attribute, 127, values);
-      break;
-    case ComponentType::UInt8:
-      append_as_floats<std::uint8_t>(attribute, 255, values);
-      break;
-    case ComponentType::Int16:
-      append_as_floats<std::int16_t>(attribute, 32767, values);
-      break;
-    case ComponentType::UInt16:
-      append_as_floats<std::uint16_t>(attribute, 65535, values);
-      break;
-    case ComponentType::UInt32:
-      append_as_floats<std::uint32_t>(attribute, 4294967295.0F, values);
-      break;
-    case ComponentType::Float32:
-      append_as_floats<float>(attribute, 1, values);
-      break;
-  }
-  for (float& value : values)
-    if (!std::isfinite(value)) value = 0;  // a file may hold anything; what is no number has no price
-  return values;
-}
 
 bool ends_with(std::string_view name, std::string_view end) {
   return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
@@ -70,7 +33,7 @@ AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) 
 }
 
 void AttributeCost::add_channel(const Attribute& attribute, Kind kind, double weight) {
-  Channel channel{kind, weight, texture_.size(), attribute.component_count, as_floats(attribute)};
+  Channel channel{kind, weight, texture_.size(), attribute.component_count, attribute_values(attribute)};
   if (kind == Kind::Texture) texture_.push_back(channels_.size());
   // Texture coordinates are needed even where they cost nothing: their faces must not turn over.
   if (weight > 0 || kind == Kind::Texture) channels_.push_back(std::move(channel));
@@ -81,7 +44,7 @@ void AttributeCost::add_skin(const Mesh& mesh, const Attribute& joints, double w
   const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
                                   [&](const Attribute& attribute) { return attribute.name == wanted; });
   if (weight <= 0 || found == mesh.attributes.end() || found->component_count != joints.component_count) return;
-  skin_.push_back({weight, joints.component_count, as_floats(joints), as_floats(*found)});
+  skin_.push_back({weight, joints.component_count, attribute_values(joints), attribute_values(*found)});
 }
 
 double AttributeCost::squared_difference(Index wedge, const Place& place, const AttributeScale& scale) const {
