@@ -37,7 +37,8 @@ void BuildCommand::add_level_options(CLI::App& app) {
       ->type_name("N")
       ->group(group);
   targets.add_to(app, group, true);
-  app.add_flag("--per-mesh", per_mesh, "Targets are for each mesh; otherwise the whole scene shares them")->group(group);
+  app.add_flag("--per-mesh", per_mesh, "Targets are for each mesh; otherwise the whole scene shares them")
+      ->group(group);
 }
 
 void BuildCommand::add_metric_options(CLI::App& app) {

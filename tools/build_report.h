@@ -71,14 +71,14 @@ struct BuildReport {
   };
 
   Input input;
-  Json settings;              ///< the options as understood
-  std::vector<Level> levels;  ///< finest first
-  Stream stream;                     ///< of all meshes together
-  std::vector<MeshPart> meshes;      ///< in the document's order
-  std::string output_path;           ///< as given
-  std::uint64_t output_bytes = 0;    ///< of all files together
-  std::vector<OutputFile> files;     ///< more than one with `--profile files`
-  double quantisation_error = 0;     ///< the farthest Draco moves a vertex, world units; 0 without Draco
+  Json settings;                   ///< the options as understood
+  std::vector<Level> levels;       ///< finest first
+  Stream stream;                   ///< of all meshes together
+  std::vector<MeshPart> meshes;    ///< in the document's order
+  std::string output_path;         ///< as given
+  std::uint64_t output_bytes = 0;  ///< of all files together
+  std::vector<OutputFile> files;   ///< more than one with `--profile files`
+  double quantisation_error = 0;   ///< the farthest Draco moves a vertex, world units; 0 without Draco
   Timings timings_ms;
 };
 

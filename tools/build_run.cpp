@@ -182,7 +182,8 @@ Result<void> BuildRun::simplify_meshes() {
     Result<SimplifyResult> result = simplify(mesh.mesh, options);
     if (!result) {
       progress_.clear();
-      return fail(result.error().code, "mesh " + tool::quoted(std::string_view(mesh.name)) + ": " + result.error().message);
+      return fail(result.error().code,
+                  "mesh " + tool::quoted(std::string_view(mesh.name)) + ": " + result.error().message);
     }
     report_simplified(mesh, *result);
     simplified_.push_back(std::move(*result));
@@ -197,8 +198,7 @@ void BuildRun::report_simplified(const SceneMesh& mesh, const SimplifyResult& re
   const ProgressiveMesh& progressive = result.mesh;
   const std::size_t round_count = progressive.round_begin.empty() ? 0 : progressive.round_begin.size() - 1;
   const BuildReport::Stream stream{
-      0,           progressive.record_count(), round_count, face_counts(progressive).front(), result.stop_reason,
-      result.blocked};
+      0, progressive.record_count(), round_count, face_counts(progressive).front(), result.stop_reason, result.blocked};
   report_.meshes.push_back({mesh.name, mesh.instance_count, mesh.scale, mesh.assembly, stream, {}});
   BuildReport::Stream& total = report_.stream;
   if (report_.meshes.size() == 1) total.stop_reason = stream.stop_reason;
@@ -296,8 +296,8 @@ Result<void> BuildRun::encode_streams() {
     Result<std::vector<std::byte>> stream = encode_stream(simplified_[i].mesh);
     if (!stream && stream.error().code != ErrorCode::LimitExceeded) return tl::unexpected(stream.error());
     if (!stream) {
-      const std::string note = "mesh " + tool::quoted(std::string_view(scene_->meshes()[i].name)) + " has no removal stream: " +
-                               stream.error().message;
+      const std::string note = "mesh " + tool::quoted(std::string_view(scene_->meshes()[i].name)) +
+                               " has no removal stream: " + stream.error().message;
       report_.input.notes.push_back(note);
       print_warning(note);
       continue;

@@ -73,8 +73,7 @@ class FaceBudget {
       queue.pop();
       Index& position = positions[i];
       if (position + 1 >= faces_[i].size()) continue;
-      const auto cost =
-          static_cast<double>((faces_[i][position + 1] - faces_[i][position]) * parts_[i].instance_count);
+      const auto cost = static_cast<double>((faces_[i][position + 1] - faces_[i][position]) * parts_[i].instance_count);
       if (cost > left) continue;
       left -= cost;
       queue.push({errors_[i][++position], i});

@@ -36,8 +36,8 @@ Deviation DeviationTotal::result() const {
 }
 
 AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b) {
-  return {a.nonfinite_faces + b.nonfinite_faces, a.degenerate_faces + b.degenerate_faces,
-          a.duplicate_faces + b.duplicate_faces, a.unused_points + b.unused_points,
+  return {a.nonfinite_faces + b.nonfinite_faces,     a.degenerate_faces + b.degenerate_faces,
+          a.duplicate_faces + b.duplicate_faces,     a.unused_points + b.unused_points,
           a.nonmanifold_edges + b.nonmanifold_edges, a.cut_vertices + b.cut_vertices};
 }
 

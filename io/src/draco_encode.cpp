@@ -3,8 +3,11 @@
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
+#include <cmath>
 #include <exception>
+#include <limits>
 
+#include "bytes.h"
 #include "text.h"
 
 namespace lodestone::detail {
@@ -102,7 +105,25 @@ void set_grids(draco::ExpertEncoder& encoder, const MeshBuilder& builder, const 
   }
 }
 
+/// Draco multiplies differences by up to 2^30.
+bool is_quantisable(std::span<const std::byte> values, float range) {
+  constexpr float kLargest = std::numeric_limits<float>::max() / 4;
+  if (!(range <= kLargest)) return false;
+  for (std::size_t at = 0; at < values.size(); at += sizeof(float))
+    if (!(std::abs(load_f32(values, at)) <= kLargest)) return false;
+  return true;
+}
+
 }  // namespace
+
+bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids) {
+  if (!is_quantisable(std::as_bytes(std::span(mesh.positions)), grids.position.range)) return false;
+  for (std::size_t i = 0; i < mesh.attributes.size(); ++i)
+    if (mesh.attributes[i].type == ComponentType::Float32 &&
+        !is_quantisable(mesh.attributes[i].data, grids.attributes[i].range))
+      return false;
+  return true;
+}
 
 Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, DracoMethod method,
                                     int compression_level) {

@@ -39,9 +39,12 @@ struct DracoPrimitive {
   std::vector<std::uint32_t> attribute_ids;  ///< unique ids, one per attribute of the mesh
 };
 
+/// True if Draco can quantise all of a mesh's numbers: they are finite, and so is their range.
+bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids);
+
 /// Compresses a mesh. Float attributes are quantised in their grids, integers are kept exactly.
-/// `compression_level` is 0 to 10. Pre: there are faces; wedges and vertices stand in the order of their first use.
-/// Errors: InvalidArgument with Draco's reason.
+/// `compression_level` is 0 to 10. Pre: `can_encode_draco`; there are faces; wedges and vertices stand in the order of
+/// their first use. Errors: InvalidArgument with Draco's reason.
 Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, DracoMethod method,
                                     int compression_level);
 

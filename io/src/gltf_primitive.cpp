@@ -126,8 +126,8 @@ Result<void> check_attribute(const Primitive& primitive, const std::string& name
   if (data.component_count > 4)
     return fail(ErrorCode::Unsupported, text(where, ": ", name, " has ", int{data.component_count}, " components"));
   if (data.count == primitive.positions.size()) return {};
-  return fail(ErrorCode::Malformed, text(where, ": ", name, " has ", data.count, " elements for ",
-                                         primitive.positions.size(), " positions"));
+  return fail(ErrorCode::Malformed,
+              text(where, ": ", name, " has ", data.count, " elements for ", primitive.positions.size(), " positions"));
 }
 
 }  // namespace

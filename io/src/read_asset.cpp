@@ -87,8 +87,7 @@ using Chains = std::vector<std::vector<std::size_t>>;
 Result<void> read_numbers(const GltfDocument& document, std::size_t index, const Chains& chains, Asset::Level& level) {
   LevelNumbers numbers;
   for (const auto& chain : chains) {
-    LODESTONE_TRY(const Json* const node,
-                  document.element("nodes", "node", chain[std::min(index, chain.size() - 1)]));
+    LODESTONE_TRY(const Json* const node, document.element("nodes", "node", chain[std::min(index, chain.size() - 1)]));
     numbers.add(*node);
     LODESTONE_TRY(const Json* const finest, document.element("nodes", "node", chain[0]));
     level.screen_coverage = std::max(level.screen_coverage, screen_coverage(*finest, index));

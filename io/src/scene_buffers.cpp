@@ -39,7 +39,8 @@ class UseFinder {
   BufferPlan run() {
     add_meshes();
     add_animations();
-    for_each(json_, "skins", [&](const Json& skin) { accessors_.add(find_member(skin, "inverseBindMatrices"), false); });
+    for_each(json_, "skins",
+             [&](const Json& skin) { accessors_.add(find_member(skin, "inverseBindMatrices"), false); });
     add_instancing();
     add_views_of_accessors();
     for_each(json_, "images", [&](const Json& image) { views_.add(find_member(image, "bufferView"), false); });

@@ -61,8 +61,8 @@ std::vector<EmbeddedImage> fetch_images(const GltfDocument& document, const File
     if (uri.empty()) continue;
     auto embedded = fetch_image(image, uri, fetch);
     if (!embedded) {
-      notes.push_back(text("image ", i, " stays outside the file, at '", shortened(uri),
-                           "': ", embedded.error().message));
+      notes.push_back(
+          text("image ", i, " stays outside the file, at '", shortened(uri), "': ", embedded.error().message));
       continue;
     }
     embedded->image = i;

@@ -49,7 +49,7 @@ namespace lodestone {
 struct Scene::Impl {
   detail::GltfDocument document;
   std::vector<SceneMesh> meshes;
-  std::vector<detail::MeshSource> sources;   ///< one for each of the meshes
+  std::vector<detail::MeshSource> sources;  ///< one for each of the meshes
   std::vector<detail::EmbeddedImage> images;
   std::vector<detail::Json> dropped_meshes;  ///< coarser levels that were taken out of the document
   std::vector<std::string> notes;

@@ -21,8 +21,8 @@ bool same_mesh(const Mesh& a, const Mesh& b) {
                     [](const Attribute& x, const Attribute& y) { return x.name == y.name && x.data == y.data; });
 }
 
-Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const SceneMesh& mesh,
-                   std::size_t node_count, std::optional<double> position_step) {
+Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const SceneMesh& mesh, std::size_t node_count,
+                   std::optional<double> position_step) {
   const Deviation& d = level.deviation;
   Json numbers = {{"faces", written.face_count}, {"vertices", written.vertex_count}};
   set_finite(numbers, "maximum_deviation", d.maximum());

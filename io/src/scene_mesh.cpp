@@ -92,7 +92,8 @@ Result<void> check_size(const GltfDocument& document, std::span<const Primitive>
     points += primitive.positions.size();
     for (const auto* attributes : {&primitive.attributes, &primitive.targets})
       for (const Attribute& a : *attributes) {
-        if (std::any_of(layouts.begin(), layouts.end(), [&](const Attribute* b) { return same_layout(a, *b); })) continue;
+        if (std::any_of(layouts.begin(), layouts.end(), [&](const Attribute* b) { return same_layout(a, *b); }))
+          continue;
         layouts.push_back(&a);
         bytes_per_point += a.element_bytes();
       }

@@ -174,9 +174,8 @@ class InstanceMeasure {
   Result<void> add_skinned(SceneMesh& mesh, const Skinner& skinner, std::span<const Transform> joints) {
     mesh.skinned = true;
     for (const Transform& joint : joints) mesh.scale = std::max(mesh.scale, joint.stretch());
-    return add_points(mesh, [&](std::size_t wedge, const Vec3& p) {
-      return skinner.empty() ? p : skinner.pose(wedge, p, joints);
-    });
+    return add_points(
+        mesh, [&](std::size_t wedge, const Vec3& p) { return skinner.empty() ? p : skinner.pose(wedge, p, joints); });
   }
 
   template <class Place>

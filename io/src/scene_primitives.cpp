@@ -125,6 +125,7 @@ class GeometryWriter {
       grids.attributes.push_back(grids_.attributes[primitive.columns[i]]);
       requests.push_back({0, a.type, a.component_count, a.normalized});
     }
+    if (!can_encode_draco(compressed, grids)) return write_plain(primitive, group);
     const auto method = primitive.target_count > 0 ? DracoMethod::Sequential : DracoMethod::Edgebreaker;
     LODESTONE_TRY(const DracoPrimitive encoded,
                   encode_draco(compressed, grids, method, options_.draco_compression_level));
@@ -151,11 +152,11 @@ class GeometryWriter {
       if (column.target) continue;
       if (column.needs_quantization) builder_.require_extension("KHR_mesh_quantization");
       ids[column.semantic] = encoded.attribute_ids[next];
-      geometry.attributes[column.semantic] =
-          builder_.add("accessors", attribute_accessor(decoded.attributes[++next]));
+      geometry.attributes[column.semantic] = builder_.add("accessors", attribute_accessor(decoded.attributes[++next]));
     }
     const auto index_type = decoded.point_count <= 0xffff ? ComponentType::UInt16 : ComponentType::UInt32;
-    geometry.indices = builder_.add("accessors", attribute_accessor({index_type, 1, false, decoded.indices.size(), {}}));
+    geometry.indices =
+        builder_.add("accessors", attribute_accessor({index_type, 1, false, decoded.indices.size(), {}}));
     geometry.draco = {{"bufferView", builder_.add_view(encoded.bytes)}, {"attributes", std::move(ids)}};
     return geometry;
   }

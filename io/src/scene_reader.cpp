@@ -32,8 +32,8 @@ Error with_path(Error error, const std::filesystem::path& path) {
 Result<void> refuse_levels(const GltfDocument& document) {
   LODESTONE_TRY(const auto chains, lod_chains(document));
   if (chains.empty()) return {};
-  return fail(ErrorCode::Unsupported, text("node ", chains[0][0],
-                                           " already has levels of detail (MSFT_lod); build from the original"));
+  return fail(ErrorCode::Unsupported,
+              text("node ", chains[0][0], " already has levels of detail (MSFT_lod); build from the original"));
 }
 
 /// Returns the nodes that show each mesh in a scene.

@@ -120,9 +120,8 @@ class SceneWriter {
     }
     grids_ = fit_grids(scene_, geometry_, options_);
     for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh)
-      layout_.quantisation_error =
-          std::max(layout_.quantisation_error,
-                   std::sqrt(3.0) / 2 * grids_[mesh].position.step() * scene_.meshes()[mesh].scale);
+      layout_.quantisation_error = std::max(
+          layout_.quantisation_error, std::sqrt(3.0) / 2 * grids_[mesh].position.step() * scene_.meshes()[mesh].scale);
     return {};
   }
 
@@ -176,8 +175,8 @@ class SceneWriter {
 
   /// glTF has no empty mesh, but the numbers of the others must stay: one triangle of no size, that nothing shows.
   Json placeholder_primitives() {
-    const Json accessor = {{"componentType", 5126}, {"count", 3},        {"type", "VEC3"},
-                           {"min", {0, 0, 0}},      {"max", {0, 0, 0}}};
+    const Json accessor = {
+        {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {0, 0, 0}}};
     return Json::array({Json{{"attributes", {{"POSITION", builder_.add("accessors", accessor)}}}}});
   }
 
@@ -255,7 +254,7 @@ class SceneWriter {
   const AssetOptions& options_;
   BufferPlan plan_;
   GlbBuilder builder_;
-  std::vector<std::vector<LevelGeometry>> geometry_;                 // by mesh and level, as the next two
+  std::vector<std::vector<LevelGeometry>> geometry_;  // by mesh and level, as the next two
   std::vector<std::vector<WrittenLevel>> written_;
   std::vector<std::vector<std::optional<std::size_t>>> mesh_index_;  // nothing for a level that shows nothing
   std::vector<QuantizationGrids> grids_;
