@@ -36,11 +36,11 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   return levels;
 }
 
-std::vector<LevelTarget> finest_first(std::vector<LevelTarget> targets) {
-  std::stable_sort(targets.begin(), targets.end(), [](const LevelTarget& a, const LevelTarget& b) {
-    return a.kind == TargetKind::Faces ? a.value > b.value : a.value < b.value;
+void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene) {
+  std::stable_sort(targets.begin(), targets.end(), [&](const LevelTarget& a, const LevelTarget& b) {
+    const double first = resolve(a, scene).value, second = resolve(b, scene).value;
+    return a.kind == TargetKind::Faces ? first > second : first < second;
   });
-  return targets;
 }
 
 SimplifyOptions metric_options(const BuildCommand& options) {

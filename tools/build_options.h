@@ -17,8 +17,8 @@ bool has_file_per_level(const BuildCommand& options);
 /// Returns the targets of the levels after the whole scene, as the options ask for them.
 Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options);
 
-/// Returns the targets finest first; a whole run has them in one kind.
-std::vector<LevelTarget> finest_first(std::vector<LevelTarget> targets);
+/// Sorts targets of one kind: finest first, by what they come to for the whole scene.
+void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene);
 
 /// Returns what the metric's options say.
 SimplifyOptions metric_options(const BuildCommand& options);

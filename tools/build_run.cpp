@@ -118,7 +118,7 @@ class BuildRun {
 Result<Outcome> BuildRun::run() {
   Result<std::vector<LevelTarget>> requested = requested_levels(options_);
   if (!requested) return tl::unexpected(requested.error());
-  targets_ = finest_first(std::move(*requested));
+  targets_ = std::move(*requested);
   if (Result<void> paths = check_paths(options_, targets_.size() + 1); !paths) return tl::unexpected(paths.error());
   report_.settings = settings_json(options_, targets_.size() + 1);
 
@@ -141,6 +141,7 @@ Result<void> BuildRun::read() {
   scene_ = std::move(*scene);
   if (Result<void> fit = check_input(options_.input, *scene_); !fit) return fit;
   report_.input = input_report(options_.input, *scene_);
+  sort_finest_first(targets_, {report_.input.face_count, scene_->box().diagonal()});
   for (const std::string& line : remarks(*scene_)) print_warning(quoted(options_.input) + ": " + line);
   report_.timings_ms.read = stopwatch_.lap_ms();
   return {};
