@@ -86,7 +86,7 @@ TEST_CASE("a ratio is shared by the scene: faces go where they keep the error sm
   CHECK(faces_of(report, 0, 2) != faces_of(report, 1, 2));
 }
 
-TEST_CASE("--per-mesh gives each mesh the target itself") {
+TEST_CASE("with --per-mesh each mesh gets the target itself") {
   const SceneShop shop;
   REQUIRE(shop.build({"--levels", "2", "--ratio", "0.25", "--per-mesh"}).exit_code == 0);
   Json report = shop.read_report();
@@ -165,7 +165,7 @@ TEST_CASE("extract takes a level of the whole scene") {
   CHECK(scene.meshes()[1].nodes == Names{"small", "middle"});
 }
 
-TEST_CASE("--profile files writes a scene for each level, and an index") {
+TEST_CASE("the profile of files writes a scene for each level, and an index") {
   const SceneShop shop;
   const ProgramRun run = shop.build({"--levels", "3", "--profile", "files"});
   REQUIRE(run.exit_code == 0);
@@ -192,7 +192,7 @@ TEST_CASE("--profile files writes a scene for each level, and an index") {
   CHECK(report["output"]["files"].size() == 3);
 }
 
-TEST_CASE("--profile files writes nothing where one of its files cannot be written") {
+TEST_CASE("the profile of files writes nothing where one of its files cannot be written") {
   const SceneShop shop;
   std::filesystem::create_directory(shop.folder / "out_LOD1.glb");
   CHECK(shop.build({"--levels", "3", "--profile", "files"}).exit_code == 4);
