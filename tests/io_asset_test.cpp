@@ -5,6 +5,7 @@
 
 #include <lodestone/io/file.h>
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
 
 #include "support/data.h"
 #include "support/mesh_properties.h"
@@ -26,9 +27,22 @@ std::vector<AssetLevel> sphere_levels() {
   return levels;
 }
 
+/// Levels number the primitives of their scene, where readers number materials.
+Mesh numbered_by_primitive(Mesh mesh) {
+  const Scene scene = Scene::from_mesh({std::move(mesh), {}, {}}, "").value();
+  return scene.meshes()[0].mesh;
+}
+
+/// Encodes levels as those of a scene of one mesh, which the first of them describes.
+Result<EncodedAsset> encode(std::span<const AssetLevel> levels, const AssetOptions& options,
+                            std::size_t stream_bytes = 0) {
+  const Scene scene = Scene::from_mesh({levels[0].mesh, {}, {}}, "thing").value();
+  const LeveledMesh mesh{{levels.begin(), levels.end()}, std::vector<std::byte>(stream_bytes, std::byte{7})};
+  return encode_scene(scene, std::span(&mesh, scene.meshes().size()), options);
+}
+
 EncodedAsset encoded(std::span<const AssetLevel> levels, const AssetOptions& options, std::size_t stream_bytes = 0) {
-  const std::vector<std::byte> stream(stream_bytes, std::byte{7});
-  auto asset = encode_asset(levels, stream, options);
+  auto asset = encode(levels, options, stream_bytes);
   INFO((asset ? std::string() : asset.error().message));
   REQUIRE(asset);
   return std::move(*asset);
@@ -73,7 +87,9 @@ TEST_CASE("plain levels read back bit for bit, with their numbers") {
     CHECK(asset.levels[i].curvature_error == levels[i].curvature_error);
     CHECK_FALSE(asset.levels[i].draco);
   }
-  CHECK(asset.stream == std::vector<std::byte>(99, std::byte{7}));
+  REQUIRE(asset.streams.size() == 1);
+  CHECK(asset.streams[0].mesh == "thing");
+  CHECK(asset.streams[0].bytes == std::vector<std::byte>(99, std::byte{7}));
 }
 
 TEST_CASE("draco levels keep their faces and move no vertex farther than half a step") {
@@ -103,7 +119,7 @@ TEST_CASE("levels share one grid: a vertex of two levels is at one place") {
 TEST_CASE("attributes and materials survive, plain exactly, draco in number") {
   for (const TriangleSoup& soup : {seam_cube(3), seam_sphere(8, 6), two_material_grid(4)}) {
     std::vector<AssetLevel> levels(1);
-    levels[0].mesh = mesh_of(soup);
+    levels[0].mesh = numbered_by_primitive(mesh_of(soup));
     for (const bool draco : {false, true}) {
       AssetOptions options;
       options.draco = draco;
@@ -212,21 +228,19 @@ TEST_CASE("an ordinary gltf is an asset of one level, without a stream") {
   const auto asset = read_asset(scratch / "one.glb");
   REQUIRE(asset);
   CHECK(asset->levels.size() == 1);
-  CHECK(asset->stream.empty());
-  const auto stream = read_asset_stream(scratch / "one.glb");
-  REQUIRE_FALSE(stream);
-  CHECK(stream.error().code == ErrorCode::Unsupported);
-  CHECK_THAT(stream.error().message, contains("one.glb") && contains("no removal stream"));
+  CHECK(asset->streams.empty());
 }
 
 TEST_CASE("options out of range are named") {
   AssetOptions options;
   options.draco_position_bits = 31;
-  const auto asset = encode_asset(sphere_levels(), {}, options);
+  const auto asset = encode(sphere_levels(), options);
   REQUIRE_FALSE(asset);
   CHECK(asset.error().code == ErrorCode::InvalidArgument);
   CHECK_THAT(asset.error().message, contains("draco_position_bits is 31"));
-  CHECK_FALSE(encode_asset({}, {}, {}));
+  const Scene scene = Scene::from_mesh({mesh_of(tetrahedron()), {}, {}}, "").value();
+  CHECK_FALSE(encode_scene(scene, {}, {}));
+  CHECK_FALSE(encode_scene(scene, std::vector<LeveledMesh>(1), {}));
 }
 
 TEST_CASE("every truncation of an asset is an error") {

@@ -27,9 +27,6 @@ std::string triangle_gltf(const std::string& extra) {
          extra + "}";
 }
 
-const char* const kAnimation = R"(,"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],)"
-                               R"("samplers":[{"input":1,"output":0}]}])";
-
 std::filesystem::path write_sphere(const ScratchDirectory& folder) {
   const std::filesystem::path path = folder / "sphere.obj";
   REQUIRE(write_mesh(path, assemble(icosphere(3, 0.02, 1)).value().mesh));
@@ -131,20 +128,24 @@ TEST_CASE("input that cannot be read exits with 2") {
   CHECK(names_in(folder.path()) == Names{"empty.obj", "junk.glb"});
 }
 
-TEST_CASE("what would be lost exits with 3 and is named") {
+TEST_CASE("what is not understood exits with 3 and is named") {
   const ScratchDirectory folder;
   const std::string plain = (folder / "plain.gltf").string();
-  const std::string animated = (folder / "animated.gltf").string();
+  const std::string odd = (folder / "odd.gltf").string();
   const std::string out = (folder / "out.glb").string();
   write_text(plain, triangle_gltf(""));
-  write_text(animated, triangle_gltf(kAnimation));
+  write_text(odd, triangle_gltf(R"(,"extensionsRequired":["EXT_odd_geometry"])"));
   CHECK(run_program({"build", plain, "-o", out}).exit_code == 0);
 
   const std::string before = file_text(out);
-  const ProgramRun run = run_program({"build", animated, "-o", out});
+  const ProgramRun run = run_program({"build", odd, "-o", out});
   check_error(run, 3);
-  CHECK_THAT(run.err, contains("animation"));
+  CHECK_THAT(run.err, contains("EXT_odd_geometry"));
   CHECK(file_text(out) == before);
+
+  const ProgramRun again = run_program({"build", out, "-o", (folder / "again.glb").string()});
+  check_error(again, 3);
+  CHECK_THAT(again.err, contains("already has levels of detail (MSFT_lod)"));
 }
 
 TEST_CASE("extract from a file without a stream exits with 3") {

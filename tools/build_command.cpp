@@ -12,7 +12,7 @@ constexpr int kMaxLevelCount = 32;
 }  // namespace
 
 void BuildCommand::add_to(CLI::App& app) {
-  app.add_option("-i,--input,IN", input, "Mesh file: OBJ, PLY, STL, glTF, GLB and others")
+  app.add_option("-i,--input,IN", input, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", output, "The .glb to write")->required()->type_name("OUT.glb");
@@ -26,7 +26,8 @@ void BuildCommand::add_to(CLI::App& app) {
       "Examples:\n"
       "  lodestone build bunny.obj -o bunny.glb\n"
       "  lodestone build bunny.obj -o bunny.glb --error 0.1%,0.5%,2% --report bunny.json\n"
-      "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --no-draco");
+      "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --no-draco\n"
+      "  lodestone build town.gltf -o town.glb --profile files");
 }
 
 void BuildCommand::add_level_options(CLI::App& app) {
@@ -36,6 +37,8 @@ void BuildCommand::add_level_options(CLI::App& app) {
       ->type_name("N")
       ->group(group);
   targets.add_to(app, group, true);
+  app.add_flag("--per-mesh", per_mesh, "Targets are for each mesh; otherwise the whole scene shares them")
+      ->group(group);
 }
 
 void BuildCommand::add_metric_options(CLI::App& app) {
@@ -56,6 +59,10 @@ void BuildCommand::add_metric_options(CLI::App& app) {
 
 void BuildCommand::add_format_options(CLI::App& app) {
   const char* group = "File";
+  app.add_option("--profile", profile, "One file, levels by MSFT_lod (default), or a file for each level and an index")
+      ->check(CLI::IsMember({"msft-lod", "files"}))
+      ->type_name("NAME")
+      ->group(group);
   app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
   app.add_flag("--no-draco", no_draco, "Write plain geometry that needs no decoder")->group(group);
   app.add_option("--qp", position_bits, "Bits of a Draco position (default 14)")

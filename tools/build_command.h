@@ -15,7 +15,7 @@ class App;
 
 namespace lodestone::tool {
 
-/// `lodestone build`: a mesh file in, a progressive multi-LOD .glb out.
+/// `lodestone build`: a scene or mesh file in, a progressive multi-LOD .glb out.
 struct BuildCommand {
   std::filesystem::path input;
   std::filesystem::path output;
@@ -25,6 +25,8 @@ struct BuildCommand {
   std::string reference = "original";
   std::optional<int> level_count;  ///< with --ratio only, the whole mesh included; 5 if not given
   TargetOptions targets;
+  bool per_mesh = false;
+  std::string profile = "msft-lod";
   bool no_stream = false;
   bool no_draco = false;
   int position_bits = 14;

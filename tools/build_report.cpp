@@ -22,6 +22,7 @@ Json input_json(const BuildReport::Input& input) {
 
 Json target_json(const std::optional<LevelTarget>& target) {
   if (!target) return nullptr;
+  if (target->relative) return {{std::string(name_of(target->kind)) + "_ratio", target->value}};  // of each mesh
   if (target->kind == TargetKind::Faces) return {{"faces", static_cast<std::uint64_t>(target->value)}};
   return {{std::string(name_of(target->kind)), target->value}};
 }
@@ -51,6 +52,31 @@ Json stream_json(const BuildReport::Stream& stream) {
             {"ring", stream.blocked.ring}}}};
 }
 
+Json part_json(const BuildReport::MeshPart& part) {
+  Json levels = Json::array();
+  for (const BuildReport::MeshPart::Level& level : part.levels)
+    levels.push_back({{"faces", level.face_count},
+                      {"vertices", level.vertex_count},
+                      {"deviation", deviation_json(level.deviation)},
+                      {"deviation_bound", level.deviation_bound}});
+  return {{"name", part.name},
+          {"instances", part.instance_count},
+          {"scale", part.scale},
+          {"assembly", assembly_json(part.assembly)},
+          {"stream", stream_json(part.stream)},
+          {"levels", std::move(levels)}};
+}
+
+Json output_json(const BuildReport& report) {
+  Json files = Json::array();
+  for (const BuildReport::OutputFile& file : report.files)
+    files.push_back({{"path", file.path}, {"bytes", file.bytes}});
+  return {{"path", report.output_path},
+          {"bytes", report.output_bytes},
+          {"quantisation_error", report.quantisation_error},
+          {"files", std::move(files)}};
+}
+
 Json timings_json(const BuildReport::Timings& timings) {
   return {{"read", timings.read}, {"simplify", timings.simplify}, {"levels", timings.levels}, {"write", timings.write}};
 }
@@ -70,16 +96,16 @@ std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& le
 Json report_json(const BuildReport& report) {
   Json levels = Json::array();
   for (const BuildReport::Level& level : report.levels) levels.push_back(level_json(level));
+  Json meshes = Json::array();
+  for (const BuildReport::MeshPart& part : report.meshes) meshes.push_back(part_json(part));
   return {{"schema_version", kReportSchemaVersion},
           {"tool", {{"name", "lodestone"}, {"version", LODESTONE_VERSION}}},
           {"input", input_json(report.input)},
           {"settings", report.settings},
           {"levels", levels},
           {"stream", stream_json(report.stream)},
-          {"output",
-           {{"path", report.output_path},
-            {"bytes", report.output_bytes},
-            {"quantisation_error", report.quantisation_error}}},
+          {"meshes", meshes},
+          {"output", output_json(report)},
           {"timings_ms", timings_json(report.timings_ms)},
           {"peak_memory_bytes", peak_memory_bytes()}};
 }
@@ -94,7 +120,8 @@ void print_table(const BuildReport& report) {
                 report.stream.round_count, report.stream.base_face_count,
                 static_cast<unsigned long long>(report.stream.bytes));
   }
-  std::printf("%s: %llu bytes\n", report.output_path.c_str(), static_cast<unsigned long long>(report.output_bytes));
+  for (const BuildReport::OutputFile& file : report.files)
+    std::printf("%s: %llu bytes\n", file.path.c_str(), static_cast<unsigned long long>(file.bytes));
 }
 
 }  // namespace lodestone::tool

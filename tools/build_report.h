@@ -19,18 +19,18 @@ namespace lodestone::tool {
 struct BuildReport {
   struct Input {
     std::string path;
-    std::size_t face_count = 0;
-    std::size_t vertex_count = 0;
-    Box box;
-    AssemblyReport assembly;
+    std::size_t face_count = 0;    ///< drawn: all instances counted
+    std::size_t vertex_count = 0;  ///< drawn
+    Box box;                       ///< of the scene
+    AssemblyReport assembly;       ///< of all meshes
     std::vector<std::string> notes;
   };
   struct Level {
-    std::size_t face_count = 0;
-    std::size_t vertex_count = 0;
-    Deviation deviation;         ///< measured, whole mesh to level and back; before quantisation
-    double deviation_bound = 0;  ///< what the stream promises for the level, mesh units
-    double curvature_error = 0;  ///< the metric's own unit
+    std::size_t face_count = 0;    ///< drawn
+    std::size_t vertex_count = 0;  ///< drawn
+    Deviation deviation;           ///< measured, whole scene to level and back, world units; before quantisation
+    double deviation_bound = 0;    ///< what the streams promise for the level, world units
+    double curvature_error = 0;    ///< the largest of all meshes, in the metric's own unit
     std::uint64_t bytes = 0;
     std::optional<LevelTarget> target;  ///< in absolute numbers; none for the whole mesh
     bool met = true;
@@ -44,6 +44,25 @@ struct BuildReport {
     StopReason stop_reason = StopReason::Stuck;
     BlockedCounts blocked;
   };
+  /// One mesh of the scene; lengths in mesh units.
+  struct MeshPart {
+    struct Level {
+      std::size_t face_count = 0;
+      std::size_t vertex_count = 0;
+      Deviation deviation;
+      double deviation_bound = 0;
+    };
+    std::string name;
+    std::size_t instance_count = 0;
+    double scale = 1;  ///< world units per mesh unit
+    AssemblyReport assembly;
+    Stream stream;
+    std::vector<Level> levels;
+  };
+  struct OutputFile {
+    std::string path;
+    std::uint64_t bytes = 0;
+  };
   struct Timings {
     double read = 0;
     double simplify = 0;
@@ -52,12 +71,14 @@ struct BuildReport {
   };
 
   Input input;
-  Json settings;              ///< the options as understood
-  std::vector<Level> levels;  ///< finest first
-  Stream stream;
-  std::string output_path;
-  std::uint64_t output_bytes = 0;
-  double quantisation_error = 0;  ///< the farthest Draco moves a vertex, mesh units; 0 without Draco
+  Json settings;                   ///< the options as understood
+  std::vector<Level> levels;       ///< finest first
+  Stream stream;                   ///< of all meshes together
+  std::vector<MeshPart> meshes;    ///< in the document's order
+  std::string output_path;         ///< as given
+  std::uint64_t output_bytes = 0;  ///< of all files together
+  std::vector<OutputFile> files;   ///< more than one with `--profile files`
+  double quantisation_error = 0;   ///< the farthest Draco moves a vertex, world units; 0 without Draco
   Timings timings_ms;
 };
 

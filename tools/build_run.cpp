@@ -1,65 +1,39 @@
 #include "build_run.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
-#include <system_error>
 #include <utility>
 
-#include <lodestone/io/asset.h>
-#include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
 
+#include "build_options.h"
+#include "build_output.h"
 #include "build_report.h"
 #include "messages.h"
 #include "progress_bar.h"
-#include "staged_file.h"
+#include "scene_target.h"
+#include "scene_totals.h"
 #include "stopwatch.h"
 #include "text_table.h"
-#include "unsupported_content.h"
 
 namespace lodestone::tool {
 namespace {
 
-constexpr int kDefaultLevelCount = 5;
-constexpr double kDefaultRatio = 0.5;
 constexpr double kMostFacesOfOneRemoval = 2;
 
-Metric metric_of(const std::string& name) {
-  if (name == "gaussian") return Metric::Gaussian;
-  if (name == "mean") return Metric::Mean;
-  if (name == "principal") return Metric::Principal;
-  return Metric::Hybrid;
+AssemblyReport assembly_of(const Scene& scene) {
+  AssemblyReport total;
+  for (const SceneMesh& mesh : scene.meshes()) total = total + mesh.assembly;
+  return total;
 }
 
-Normalisation normalisation_of(const std::string& name) {
-  return name == "density" ? Normalisation::Density : Normalisation::Integral;
-}
-
-Reference reference_of(const std::string& name) { return name == "current" ? Reference::Current : Reference::Original; }
-
-Result<void> check_paths(const BuildCommand& options) {
-  std::error_code ignored;
-  if (options.output.extension() != ".glb") {
-    return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " does not end in .glb");
-  }
-  if (std::filesystem::equivalent(options.input, options.output, ignored)) {
-    return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " is the input");
-  }
-  if (options.report && options.report->lexically_normal() == options.output.lexically_normal()) {
-    return fail(ErrorCode::InvalidArgument, "--report: " + quoted(*options.report) + " is the output");
-  }
-  Result<void> place = check_destination(options.output);
-  if (place && options.report) place = check_destination(*options.report);
-  return place;
-}
-
-std::vector<std::string> remarks(const MeshFile& file) {
-  std::vector<std::string> lines = file.notes;
-  for (std::string& line : sentences(file.assembly)) lines.push_back(std::move(line));
+std::vector<std::string> remarks(const Scene& scene) {
+  std::vector<std::string> lines = scene.notes();
+  for (std::string& line : sentences(assembly_of(scene))) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -69,62 +43,19 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Refuses what would not come out as the asset that went in.
-Result<void> check_input(const std::filesystem::path& path, const MeshFile& file) {
-  const std::string lost = joined(unsupported_content(file.notes));
-  if (!lost.empty()) return fail(ErrorCode::Unsupported, quoted(path) + ": not supported yet: " + lost);
-  if (file.mesh.face_count() > 0) return {};
-  const std::string why = joined(remarks(file));
+Result<void> check_input(const std::filesystem::path& path, const Scene& scene) {
+  if (!scene.meshes().empty()) return {};
+  const std::string why = joined(remarks(scene));
   return fail(ErrorCode::Malformed, quoted(path) + ": no triangles to simplify" + (why.empty() ? "" : ": " + why));
 }
 
-/// The targets of the levels after the whole mesh, as the options ask for them.
-Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
-  Result<std::vector<LevelTarget>> given = options.targets.parse();
-  if (!given) return given;
-  const bool by_ratio = given->empty() || options.targets.ratio;
-  if (!by_ratio && options.level_count) {
-    return fail(ErrorCode::InvalidArgument, "--levels goes with --ratio; a list has one level for each entry");
+BuildReport::Input input_report(const std::filesystem::path& path, const Scene& scene) {
+  BuildReport::Input input{path.string(), 0, 0, scene.box(), assembly_of(scene), scene.notes()};
+  for (const SceneMesh& mesh : scene.meshes()) {
+    input.face_count += mesh.mesh.face_count() * mesh.instance_count;
+    input.vertex_count += mesh.mesh.vertex_count() * mesh.instance_count;
   }
-  if (!by_ratio) return given;
-  const double ratio = given->empty() ? kDefaultRatio : given->front().value;
-  std::vector<LevelTarget> levels;
-  for (int i = 1; i < options.level_count.value_or(kDefaultLevelCount); ++i) {
-    levels.push_back({TargetKind::Faces, std::pow(ratio, i), true});
-  }
-  return levels;
-}
-
-/// Absolute targets, finest first.
-std::vector<LevelTarget> resolve_all(std::vector<LevelTarget> targets, const FullSize& full) {
-  for (LevelTarget& target : targets) target = resolve(target, full);
-  std::stable_sort(targets.begin(), targets.end(), [](const LevelTarget& a, const LevelTarget& b) {
-    return a.kind == TargetKind::Faces ? a.value > b.value : a.value < b.value;
-  });
-  return targets;
-}
-
-/// Where to stop: at the base mesh for the stream's sake; without a stream once the coarsest level is surely reached.
-/// Only face counts can tell early: what a level's errors are is settled when the whole run is known.
-StopCriteria stop_criteria(const BuildCommand& options, std::span<const LevelTarget> targets) {
-  StopCriteria stop;
-  if (!options.no_stream || targets.empty() || targets.back().kind != TargetKind::Faces) return stop;
-  stop.min_faces = static_cast<std::size_t>(std::max(0.0, targets.back().value - kMostFacesOfOneRemoval));
-  return stop;
-}
-
-Json settings_json(const BuildCommand& options, std::span<const LevelTarget> targets) {
-  Json json = {{"metric", options.metric},     {"normalise", options.normalisation}, {"reference", options.reference},
-               {"levels", targets.size() + 1}, {"stream", !options.no_stream},       {"draco", !options.no_draco}};
-  json["position_bits"] = options.no_draco ? Json(nullptr) : Json(options.position_bits);
-  return json;
-}
-
-/// The farthest a vertex moves when each coordinate goes to the nearest of 2^bits steps over the box's longest side.
-double quantisation_error(const Box& box, int bits) {
-  const Vec3 size = box.high - box.low;
-  const double step = std::max({size.x, size.y, size.z}) / (std::exp2(bits) - 1);
-  return std::sqrt(3.0) / 2 * step;
+  return input;
 }
 
 void append_item(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
@@ -155,36 +86,45 @@ class BuildRun {
   Result<Outcome> run();
 
  private:
+  bool wants_streams() const { return !options_.no_stream && !has_file_per_level(options_); }
+  TargetScope scope() const { return options_.per_mesh ? TargetScope::Mesh : TargetScope::Scene; }
+
   Result<void> read();
-  Result<void> simplify_input(std::span<const LevelTarget> targets);
-  void make_levels(std::span<const LevelTarget> targets);
-  void add_level(Cursor& cursor, const LevelChoice& choice, bool whole);
+  Result<void> simplify_meshes();
+  SimplifyOptions simplify_options(const SceneMesh& mesh) const;
+  StopCriteria stop_criteria(const SceneMesh& mesh) const;
+  void report_simplified(const SceneMesh& mesh, const SimplifyResult& result);
+  void make_levels();
+  void add_level(const SceneChoice& choice, bool whole);
+  void add_mesh_level(std::size_t mesh, Index position, const SceneChoice& choice);
   bool report_missed_targets() const;
+  Result<void> encode_streams();
+  Result<std::vector<EncodedAsset>> encode() const;
   Result<void> write();
-  Result<std::vector<std::byte>> encode_stream_if_wanted() const;
-  void report_layout(const EncodedAsset& asset);
+  void report_layouts(std::span<const EncodedAsset> assets);
 
   const BuildCommand& options_;
   ProgressBar progress_;
   Stopwatch stopwatch_;
-  MeshFile file_;
-  SimplifyResult simplified_;
-  std::vector<AssetLevel> levels_;
+  std::vector<LevelTarget> targets_;
+  std::optional<Scene> scene_;
+  std::vector<SimplifyResult> simplified_;  // by mesh, as the next three
+  std::vector<Cursor> cursors_;
+  std::vector<Index> last_positions_;
+  std::vector<LeveledMesh> levels_;
   BuildReport report_;
 };
 
 Result<Outcome> BuildRun::run() {
-  if (Result<void> paths = check_paths(options_); !paths) return tl::unexpected(paths.error());
   Result<std::vector<LevelTarget>> requested = requested_levels(options_);
   if (!requested) return tl::unexpected(requested.error());
+  targets_ = std::move(*requested);
+  if (Result<void> paths = check_paths(options_, targets_.size() + 1); !paths) return tl::unexpected(paths.error());
+  report_.settings = settings_json(options_, targets_.size() + 1);
 
   if (Result<void> done = read(); !done) return tl::unexpected(done.error());
-  const FullSize full{file_.mesh.face_count(), report_.input.box.diagonal()};
-  const std::vector<LevelTarget> targets = resolve_all(std::move(*requested), full);
-  report_.settings = settings_json(options_, targets);
-
-  if (Result<void> done = simplify_input(targets); !done) return tl::unexpected(done.error());
-  make_levels(targets);
+  if (Result<void> done = simplify_meshes(); !done) return tl::unexpected(done.error());
+  make_levels();
   progress_.clear();
   if (report_missed_targets() && options_.strict) return Outcome::TargetNotMet;
 
@@ -195,76 +135,139 @@ Result<Outcome> BuildRun::run() {
 
 Result<void> BuildRun::read() {
   progress_.start("reading");
-  Result<MeshFile> file = read_mesh(options_.input);
+  Result<Scene> scene = Scene::read(options_.input);
   progress_.clear();
-  if (!file) return tl::unexpected(file.error());
-  file_ = std::move(*file);
-  if (Result<void> fit = check_input(options_.input, file_); !fit) return fit;
-  report_.input = {options_.input.string(),  file_.mesh.face_count(), file_.mesh.vertex_count(),
-                   bounding_box(file_.mesh), file_.assembly,          file_.notes};
-  for (const std::string& line : remarks(file_)) print_warning(quoted(options_.input) + ": " + line);
+  if (!scene) return tl::unexpected(scene.error());
+  scene_ = std::move(*scene);
+  if (Result<void> fit = check_input(options_.input, *scene_); !fit) return fit;
+  report_.input = input_report(options_.input, *scene_);
+  sort_finest_first(targets_, {report_.input.face_count, scene_->box().diagonal()});
+  for (const std::string& line : remarks(*scene_)) print_warning(quoted(options_.input) + ": " + line);
   report_.timings_ms.read = stopwatch_.lap_ms();
   return {};
 }
 
-Result<void> BuildRun::simplify_input(std::span<const LevelTarget> targets) {
+/// Where to stop: at the base mesh for the stream's sake; without a stream once the coarsest level is surely reached.
+/// Only face counts of the mesh itself can tell early: what errors are, and what is left for a mesh of what a scene may
+/// have, is settled when the whole run is known.
+StopCriteria BuildRun::stop_criteria(const SceneMesh& mesh) const {
+  StopCriteria stop;
+  const bool alone = options_.per_mesh || (scene_->meshes().size() == 1 && mesh.instance_count == 1);
+  if (wants_streams() || !alone || targets_.empty() || targets_.back().kind != TargetKind::Faces) return stop;
+  const LevelTarget coarsest = resolve(targets_.back(), {mesh.mesh.face_count(), 0});
+  stop.min_faces = static_cast<std::size_t>(std::max(0.0, coarsest.value - kMostFacesOfOneRemoval));
+  return stop;
+}
+
+SimplifyOptions BuildRun::simplify_options(const SceneMesh& mesh) const {
+  SimplifyOptions options = metric_options(options_);
+  options.stop = stop_criteria(mesh);
+  // Bounds of every record are for the stream, for levels by error, and for sharing faces among meshes.
+  const bool by_error = !targets_.empty() && targets_.back().kind == TargetKind::Error;
+  const bool shared = scene_->meshes().size() > 1 && !options_.per_mesh;
+  if (!wants_streams() && !by_error && !shared) options.measure_step = 0;
+  return options;
+}
+
+Result<void> BuildRun::simplify_meshes() {
   progress_.start("simplifying");
-  SimplifyOptions options;
-  options.metric = metric_of(options_.metric);
-  options.normalisation = normalisation_of(options_.normalisation);
-  options.reference = reference_of(options_.reference);
-  options.stop = stop_criteria(options_, targets);
-  // Bounds of every record are for the stream, and for finding levels by error.
-  const bool by_error = !targets.empty() && targets.back().kind == TargetKind::Error;
-  if (options_.no_stream && !by_error) options.measure_step = 0;
-  options.progress = [this](double share) {
-    progress_.update(share);
-    return true;
-  };
-  Result<SimplifyResult> result = simplify(file_.mesh, options);
+  std::size_t total = 0, done = 0;
+  for (const SceneMesh& mesh : scene_->meshes()) total += mesh.mesh.face_count();
+  for (const SceneMesh& mesh : scene_->meshes()) {
+    SimplifyOptions options = simplify_options(mesh);
+    const auto faces = static_cast<double>(mesh.mesh.face_count());
+    options.progress = [&](double share) {
+      progress_.update((static_cast<double>(done) + share * faces) / static_cast<double>(total));
+      return true;
+    };
+    Result<SimplifyResult> result = simplify(mesh.mesh, options);
+    if (!result) {
+      progress_.clear();
+      return fail(result.error().code,
+                  "mesh " + tool::quoted(std::string_view(mesh.name)) + ": " + result.error().message);
+    }
+    report_simplified(mesh, *result);
+    simplified_.push_back(std::move(*result));
+    done += mesh.mesh.face_count();
+  }
   progress_.clear();
-  if (!result) return tl::unexpected(result.error());
-  simplified_ = std::move(*result);
-  const ProgressiveMesh& mesh = simplified_.mesh;
-  const std::size_t round_count = mesh.round_begin.empty() ? 0 : mesh.round_begin.size() - 1;
-  report_.stream = {
-      0, mesh.record_count(), round_count, face_counts(mesh).front(), simplified_.stop_reason, simplified_.blocked};
   report_.timings_ms.simplify = stopwatch_.lap_ms();
   return {};
 }
 
-void BuildRun::make_levels(std::span<const LevelTarget> targets) {
+void BuildRun::report_simplified(const SceneMesh& mesh, const SimplifyResult& result) {
+  const ProgressiveMesh& progressive = result.mesh;
+  const std::size_t round_count = progressive.round_begin.empty() ? 0 : progressive.round_begin.size() - 1;
+  const BuildReport::Stream stream{
+      0, progressive.record_count(), round_count, face_counts(progressive).front(), result.stop_reason, result.blocked};
+  report_.meshes.push_back({mesh.name, mesh.instance_count, mesh.scale, mesh.assembly, stream, {}});
+  BuildReport::Stream& total = report_.stream;
+  if (report_.meshes.size() == 1) total.stop_reason = stream.stop_reason;
+  if (total.stop_reason != stream.stop_reason) total.stop_reason = StopReason::Stuck;
+  total.record_count += stream.record_count;
+  total.round_count += stream.round_count;
+  total.base_face_count += stream.base_face_count * mesh.instance_count;
+  total.blocked = total.blocked + stream.blocked;
+}
+
+void BuildRun::make_levels() {
   progress_.start("measuring levels");
-  Cursor cursor(simplified_.mesh);
-  const LevelChoice whole{{}, static_cast<Index>(simplified_.mesh.record_count()), true, "whole"};
-  add_level(cursor, whole, true);
-  for (const LevelTarget& target : targets) {
-    progress_.update(static_cast<double>(levels_.size() - 1) / static_cast<double>(targets.size()));
-    add_level(cursor, choose_level(simplified_.mesh, target, simplified_.stop_reason), false);
+  std::vector<ScenePart> parts;
+  SceneChoice whole{{}, {}, true, "whole"};
+  for (std::size_t i = 0; i < simplified_.size(); ++i) {
+    const SceneMesh& mesh = scene_->meshes()[i];
+    const ProgressiveMesh& progressive = simplified_[i].mesh;
+    parts.push_back({&progressive, mesh.scale, mesh.instance_count, simplified_[i].stop_reason});
+    whole.positions.push_back(static_cast<Index>(progressive.record_count()));
+    cursors_.emplace_back(progressive);
+  }
+  levels_.resize(parts.size());
+  last_positions_ = whole.positions;
+  add_level(whole, true);
+  for (const LevelTarget& target : targets_) {
+    progress_.update(static_cast<double>(report_.levels.size() - 1) / static_cast<double>(targets_.size()));
+    add_level(choose_positions(parts, target, scope(), scene_->box().diagonal()), false);
   }
   report_.timings_ms.levels = stopwatch_.lap_ms();
 }
 
-void BuildRun::add_level(Cursor& cursor, const LevelChoice& choice, bool whole) {
-  cursor.seek(choice.position);
-  AssetLevel level;
-  level.mesh = extract_level(simplified_.mesh, cursor);
-  if (choice.position < simplified_.mesh.record_count())
-    level.deviation = measure_deviation(file_.mesh, level.mesh, level_measure());
-  level.curvature_error = simplified_.mesh.curvature_error[choice.position];
-  level.stop_reason = choice.stopped_by;
-
+void BuildRun::add_level(const SceneChoice& choice, bool whole) {
   BuildReport::Level entry;
-  entry.face_count = level.mesh.face_count();
-  entry.vertex_count = level.mesh.vertex_count();
-  entry.deviation = level.deviation;
-  entry.deviation_bound = simplified_.mesh.deviation[choice.position];
-  entry.curvature_error = level.curvature_error;
+  DeviationTotal deviation;
+  for (std::size_t i = 0; i < simplified_.size(); ++i) {
+    add_mesh_level(i, choice.positions[i], choice);
+    const SceneMesh& mesh = scene_->meshes()[i];
+    const AssetLevel& level = levels_[i].levels.back();
+    const BuildReport::MeshPart::Level& part = report_.meshes[i].levels.back();
+    entry.face_count += part.face_count * mesh.instance_count;
+    entry.vertex_count += part.vertex_count * mesh.instance_count;
+    entry.deviation_bound = std::max(entry.deviation_bound, part.deviation_bound * mesh.scale);
+    entry.curvature_error = std::max(entry.curvature_error, level.curvature_error);
+    deviation.add(level.deviation, mesh.scale, mesh.area);
+  }
+  entry.deviation = deviation.result();
   if (!whole) entry.target = choice.target;
   entry.met = choice.met;
   entry.stopped_by = choice.stopped_by;
   report_.levels.push_back(std::move(entry));
-  levels_.push_back(std::move(level));
+}
+
+void BuildRun::add_mesh_level(std::size_t mesh, Index position, const SceneChoice& choice) {
+  const ProgressiveMesh& progressive = simplified_[mesh].mesh;
+  std::vector<AssetLevel>& levels = levels_[mesh].levels;
+  AssetLevel level;
+  cursors_[mesh].seek(position);
+  level.mesh = extract_level(progressive, cursors_[mesh]);
+  if (!levels.empty() && position == last_positions_[mesh])
+    level.deviation = levels.back().deviation;
+  else if (position < progressive.record_count())
+    level.deviation = measure_deviation(scene_->meshes()[mesh].mesh, level.mesh, level_measure());
+  level.curvature_error = progressive.curvature_error[position];
+  level.stop_reason = choice.stopped_by;
+  last_positions_[mesh] = position;
+  report_.meshes[mesh].levels.push_back(
+      {level.mesh.face_count(), level.mesh.vertex_count(), level.deviation, progressive.deviation[position]});
+  levels.push_back(std::move(level));
 }
 
 /// Says which levels have more faces than asked for, and why; returns whether there are any.
@@ -272,56 +275,77 @@ bool BuildRun::report_missed_targets() const {
   std::string levels;
   std::string targets;
   for (std::size_t i = 0; i < report_.levels.size(); ++i) {
-    if (report_.levels[i].met) continue;
+    const BuildReport::Level& level = report_.levels[i];
+    if (level.met) continue;
     append_item(levels, std::to_string(i));
-    append_item(targets, number_text(report_.levels[i].target->value, 15));
+    append_item(targets, level.target->relative ? percent_text(level.target->value, 1) + " of the"
+                                                : number_text(level.target->value, 15));
   }
   if (levels.empty()) return false;
-  const std::string message = "target not met by level " + levels + ": " + targets + " faces were asked for, " +
+  const std::string message = "target not met by level " + levels + ": " + targets + " faces were asked for" +
+                              (options_.per_mesh ? " of each mesh, " : ", ") +
                               std::to_string(report_.levels.back().face_count) + " are the fewest there are; " +
-                              blocked_text(simplified_.blocked);
+                              blocked_text(report_.stream.blocked);
   options_.strict ? print_error(message) : print_warning(message);
   return true;
 }
 
-Result<std::vector<std::byte>> BuildRun::encode_stream_if_wanted() const {
-  if (options_.no_stream) return std::vector<std::byte>{};
-  return encode_stream(simplified_.mesh);
+/// A mesh that is beyond the stream's limits goes without one; its levels do not need it.
+Result<void> BuildRun::encode_streams() {
+  if (!wants_streams()) return {};
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    Result<std::vector<std::byte>> stream = encode_stream(simplified_[i].mesh);
+    if (!stream && stream.error().code != ErrorCode::LimitExceeded) return tl::unexpected(stream.error());
+    if (!stream) {
+      const std::string note = "mesh " + tool::quoted(std::string_view(scene_->meshes()[i].name)) +
+                               " has no removal stream: " + stream.error().message;
+      report_.input.notes.push_back(note);
+      print_warning(note);
+      continue;
+    }
+    report_.meshes[i].stream.bytes = stream->size();
+    levels_[i].stream = std::move(*stream);
+  }
+  return {};
+}
+
+Result<std::vector<EncodedAsset>> BuildRun::encode() const {
+  AssetOptions options;
+  options.draco = !options_.no_draco;
+  options.draco_position_bits = options_.position_bits;
+  std::vector<EncodedAsset> assets;
+  const std::size_t file_count = has_file_per_level(options_) ? report_.levels.size() : 1;
+  for (std::size_t i = 0; i < file_count; ++i) {
+    Result<EncodedAsset> asset = has_file_per_level(options_) ? encode_scene_level(*scene_, levels_, i, options)
+                                                              : encode_scene(*scene_, levels_, options);
+    if (!asset) return tl::unexpected(asset.error());
+    assets.push_back(std::move(*asset));
+  }
+  return assets;
 }
 
 Result<void> BuildRun::write() {
   progress_.start("writing");
-  const Result<std::vector<std::byte>> stream = encode_stream_if_wanted();
-  if (!stream) return tl::unexpected(stream.error());
-  AssetOptions asset_options;
-  asset_options.draco = !options_.no_draco;
-  asset_options.draco_position_bits = options_.position_bits;
-  asset_options.name = options_.input.stem().string();
-  const Result<EncodedAsset> asset = encode_asset(levels_, *stream, asset_options);
-  if (!asset) return tl::unexpected(asset.error());
-
-  StagedFile output(options_.output);
-  if (Result<void> done = output.write(asset->glb); !done) return done;
-  report_layout(*asset);
+  if (Result<void> done = encode_streams(); !done) return done;
+  const Result<std::vector<EncodedAsset>> assets = encode();
+  if (!assets) return tl::unexpected(assets.error());
+  report_layouts(*assets);
   report_.timings_ms.write = stopwatch_.lap_ms();
+  const Result<void> done = write_outputs(options_, *assets, report_);
   progress_.clear();
-  if (!options_.report) return output.commit();
-
-  StagedFile report(*options_.report);
-  const std::string text = json_text(report_json(report_));
-  if (Result<void> done = report.write(std::as_bytes(std::span(text))); !done) return done;
-  if (Result<void> done = output.commit(); !done) return done;
-  return report.commit();
+  return done;
 }
 
-void BuildRun::report_layout(const EncodedAsset& asset) {
-  for (std::size_t i = 0; i < report_.levels.size(); ++i) report_.levels[i].bytes = asset.layout.levels[i].byte_length;
-  report_.stream.bytes = asset.layout.stream_bytes;
-  report_.output_path = options_.output.string();
-  report_.output_bytes = asset.layout.total_bytes;
-  if (!options_.no_draco) {
-    report_.quantisation_error = quantisation_error(report_.input.box, options_.position_bits);
+void BuildRun::report_layouts(std::span<const EncodedAsset> assets) {
+  const bool one_file = assets.size() == 1;
+  for (std::size_t i = 0; i < report_.levels.size(); ++i) {
+    const AssetLayout& layout = one_file ? assets[0].layout : assets[i].layout;
+    report_.levels[i].bytes = layout.levels[one_file ? i : 0].geometry_bytes;
   }
+  report_.stream.bytes = assets[0].layout.stream_bytes;
+  report_.output_path = options_.output.string();
+  for (const EncodedAsset& asset : assets)
+    report_.quantisation_error = std::max(report_.quantisation_error, asset.layout.quantisation_error);
 }
 
 }  // namespace

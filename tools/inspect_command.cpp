@@ -81,23 +81,51 @@ Json stream_json(const StreamDirectory& directory) {
           {"chunks", chunks}};
 }
 
-/// Everything but levels and stream: the glTF's JSON, headers, padding.
+/// A stream's directory and the name of its mesh.
+struct ListedStream {
+  std::string mesh;
+  StreamDirectory directory;
+};
+
+std::uint64_t stream_bytes(const Asset& asset) {
+  std::uint64_t bytes = 0;
+  for (const Asset::Stream& stream : asset.streams) bytes += stream.bytes.size();
+  return bytes;
+}
+
+/// Everything but levels and streams: textures, animations, the glTF's JSON, headers, padding.
 std::uint64_t other_bytes(const Asset& asset) {
-  std::uint64_t parts = asset.stream.size();
+  std::uint64_t parts = stream_bytes(asset);
   for (const Asset::Level& level : asset.levels) parts += level.byte_length;
   return parts < asset.total_bytes ? asset.total_bytes - parts : 0;
 }
 
-Json asset_json(const std::string& path, const Asset& asset, const StreamDirectory* directory) {
+/// One stream with its chunks; of several only what they are together.
+Json all_streams_json(const Asset& asset, std::span<const ListedStream> streams) {
+  if (streams.empty()) return nullptr;
+  Json json = stream_json(streams[0].directory);
+  if (streams.size() == 1) return json;
+  json["bytes"] = stream_bytes(asset);
+  json["chunks"] = Json::array();
+  return json;
+}
+
+Json asset_json(const std::string& path, const Asset& asset, std::span<const ListedStream> streams) {
   Json levels = Json::array();
   for (const Asset::Level& level : asset.levels) levels.push_back(level_json(level));
+  Json by_mesh = Json::array();
+  for (const ListedStream& stream : streams) {
+    by_mesh.push_back({{"mesh", stream.mesh}});
+    by_mesh.back().update(stream_json(stream.directory));
+  }
   return {{"schema_version", kInspectSchemaVersion},
           {"path", path},
           {"kind", "asset"},
           {"bytes", asset.total_bytes},
           {"other_bytes", other_bytes(asset)},
           {"levels", levels},
-          {"stream", directory != nullptr ? stream_json(*directory) : Json(nullptr)}};
+          {"stream", all_streams_json(asset, streams)},
+          {"streams", by_mesh}};
 }
 
 void print_levels(const Asset& asset) {
@@ -112,9 +140,11 @@ void print_levels(const Asset& asset) {
   table.print();
 }
 
-void print_stream(const StreamDirectory& directory) {
-  std::printf("\nremoval stream, version %d.%d, %llu bytes\n", directory.version_major, directory.version_minor,
-              static_cast<unsigned long long>(directory.total_bytes));
+void print_stream(const ListedStream& stream) {
+  const StreamDirectory& directory = stream.directory;
+  std::printf("\nremoval stream%s, version %d.%d, %llu bytes\n",
+              stream.mesh.empty() ? "" : (" of " + stream.mesh).c_str(), directory.version_major,
+              directory.version_minor, static_cast<unsigned long long>(directory.total_bytes));
   TextTable table({"chunk", "records", "faces", "vertices", "deviation", "epsilon", "bytes", "decoded"});
   for (std::size_t i = 0; i < directory.chunks.size(); ++i) {
     const StreamChunk& chunk = directory.chunks[i];
@@ -125,24 +155,24 @@ void print_stream(const StreamDirectory& directory) {
   table.print();
 }
 
-void print_asset(const std::string& path, const Asset& asset, const StreamDirectory* directory) {
+void print_asset(const std::string& path, const Asset& asset, std::span<const ListedStream> streams) {
   std::printf("%s: %llu bytes, %llu of them neither level nor stream; errors in the file's units\n", path.c_str(),
               static_cast<unsigned long long>(asset.total_bytes), static_cast<unsigned long long>(other_bytes(asset)));
   print_levels(asset);
-  if (directory != nullptr) print_stream(*directory);
+  for (const ListedStream& stream : streams) print_stream(stream);
 }
 
 Result<Outcome> inspect_asset(const std::string& path, const Asset& asset, bool json) {
-  Result<StreamDirectory> directory;
-  if (!asset.stream.empty()) {
-    directory = read_stream_directory(asset.stream);
+  std::vector<ListedStream> streams;
+  for (const Asset::Stream& stream : asset.streams) {
+    Result<StreamDirectory> directory = read_stream_directory(stream.bytes);
     if (!directory) return tl::unexpected(directory.error());
+    streams.push_back({stream.mesh, std::move(*directory)});
   }
-  const StreamDirectory* stream = asset.stream.empty() ? nullptr : &*directory;
   if (json) {
-    std::fputs(json_text(asset_json(path, asset, stream)).c_str(), stdout);
+    std::fputs(json_text(asset_json(path, asset, streams)).c_str(), stdout);
   } else {
-    print_asset(path, asset, stream);
+    print_asset(path, asset, streams);
   }
   return Outcome::Done;
 }
@@ -226,7 +256,7 @@ Result<Outcome> InspectCommand::run() const {
   // A .glb from elsewhere may hold what only the general reader understands.
   if (!asset && asset.error().code == ErrorCode::Unsupported) return inspect_mesh(input, json);
   if (!asset) return tl::unexpected(asset.error());
-  if (asset->levels.size() < 2 && asset->stream.empty()) return inspect_mesh(input, json);
+  if (asset->levels.size() < 2 && asset->streams.empty()) return inspect_mesh(input, json);
   return inspect_asset(input.string(), *asset, json);
 }
 

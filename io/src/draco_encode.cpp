@@ -3,30 +3,15 @@
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
+#include <cmath>
 #include <exception>
+#include <limits>
 
+#include "bytes.h"
 #include "text.h"
 
 namespace lodestone::detail {
 namespace {
-
-/// Numbers the things that faces use, in order of first use.
-class Compaction {
- public:
-  explicit Compaction(std::size_t count) : number_(count, kNoIndex) {}
-  Index add(Index thing) {
-    if (number_[thing] == kNoIndex) {
-      number_[thing] = static_cast<Index>(used_.size());
-      used_.push_back(thing);
-    }
-    return number_[thing];
-  }
-  std::span<const Index> used() const { return used_; }
-
- private:
-  std::vector<Index> number_;
-  std::vector<Index> used_;
-};
 
 draco::DataType draco_type(ComponentType type) {
   switch (type) {
@@ -57,15 +42,14 @@ draco::GeometryAttribute::Type draco_semantic(const Attribute& attribute) {
 /// surface as joined where only attributes differ.
 class MeshBuilder {
  public:
-  MeshBuilder(const Mesh& mesh, std::span<const Index> corner_wedge)
-      : mesh_(mesh), wedges_(mesh.wedge_count()), vertices_(mesh.vertex_count()) {
-    draco_.SetNumFaces(corner_wedge.size() / 3);
-    for (std::size_t f = 0; f < corner_wedge.size() / 3; ++f) {
+  explicit MeshBuilder(const Mesh& mesh) : mesh_(mesh) {
+    draco_.SetNumFaces(mesh.face_count());
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
       draco::Mesh::Face face;
-      for (int k = 0; k < 3; ++k) face[k] = draco::PointIndex(wedges_.add(corner_wedge[3 * f + k]));
+      for (int k = 0; k < 3; ++k) face[k] = draco::PointIndex(mesh.corner_wedge[3 * f + static_cast<std::size_t>(k)]);
       draco_.SetFace(draco::FaceIndex(static_cast<std::uint32_t>(f)), face);
     }
-    draco_.set_num_points(static_cast<std::uint32_t>(wedges_.used().size()));
+    draco_.set_num_points(static_cast<std::uint32_t>(mesh.wedge_count()));
     add_positions();
     for (const Attribute& attribute : mesh.attributes) attribute_ids_.push_back(add_attribute(attribute));
   }
@@ -76,16 +60,14 @@ class MeshBuilder {
 
  private:
   void add_positions() {
-    for (const Index wedge : wedges_.used()) vertices_.add(mesh_.wedge_vertex[wedge]);
     draco::GeometryAttribute layout;
     layout.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, sizeof(Vec3f), 0);
-    position_id_ = draco_.AddAttribute(layout, false, static_cast<std::uint32_t>(vertices_.used().size()));
+    position_id_ = draco_.AddAttribute(layout, false, static_cast<std::uint32_t>(mesh_.vertex_count()));
     draco::PointAttribute& positions = *draco_.attribute(position_id_);
-    for (Index i = 0; i < vertices_.used().size(); ++i)
-      positions.SetAttributeValue(draco::AttributeValueIndex(i), &mesh_.positions[vertices_.used()[i]]);
-    for (Index i = 0; i < wedges_.used().size(); ++i)
-      positions.SetPointMapEntry(draco::PointIndex(i),
-                                 draco::AttributeValueIndex(vertices_.add(mesh_.wedge_vertex[wedges_.used()[i]])));
+    for (Index i = 0; i < mesh_.vertex_count(); ++i)
+      positions.SetAttributeValue(draco::AttributeValueIndex(i), &mesh_.positions[i]);
+    for (Index i = 0; i < mesh_.wedge_count(); ++i)
+      positions.SetPointMapEntry(draco::PointIndex(i), draco::AttributeValueIndex(mesh_.wedge_vertex[i]));
   }
 
   int add_attribute(const Attribute& attribute) {
@@ -93,42 +75,64 @@ class MeshBuilder {
     draco::GeometryAttribute layout;
     layout.Init(draco_semantic(attribute), nullptr, attribute.component_count, draco_type(attribute.type),
                 attribute.normalized, static_cast<std::int64_t>(size), 0);
-    const int id = draco_.AddAttribute(layout, true, static_cast<std::uint32_t>(wedges_.used().size()));
-    for (Index i = 0; i < wedges_.used().size(); ++i)
-      draco_.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i),
-                                              attribute.data.data() + wedges_.used()[i] * size);
+    const int id = draco_.AddAttribute(layout, true, static_cast<std::uint32_t>(mesh_.wedge_count()));
+    for (Index i = 0; i < mesh_.wedge_count(); ++i)
+      draco_.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), attribute.data.data() + i * size);
     return id;
   }
 
   const Mesh& mesh_;
-  Compaction wedges_, vertices_;
   draco::Mesh draco_;
   int position_id_ = 0;
   std::vector<int> attribute_ids_;
 };
 
-void set_grid(draco::ExpertEncoder& encoder, int id, const QuantizationGrid& grid) {
-  encoder.SetAttributeExplicitQuantization(id, grid.bits, static_cast<int>(grid.origin.size()), grid.origin.data(),
-                                           grid.range);
+/// Says how every float attribute is quantised.
+void set_grids(draco::ExpertEncoder& encoder, const MeshBuilder& builder, const Mesh& mesh,
+               const QuantizationGrids& grids) {
+  const auto set_grid = [&](int id, const QuantizationGrid& grid) {
+    encoder.SetAttributeExplicitQuantization(id, grid.bits, static_cast<int>(grid.origin.size()), grid.origin.data(),
+                                             grid.range);
+  };
+  set_grid(builder.position_id(), grids.position);
+  for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
+    if (mesh.attributes[i].type != ComponentType::Float32) continue;
+    const int id = builder.attribute_ids()[i];
+    if (mesh.attributes[i].name == "NORMAL")
+      encoder.SetAttributeQuantization(id, grids.attributes[i].bits);
+    else
+      set_grid(id, grids.attributes[i]);
+  }
+}
+
+/// Draco multiplies differences by up to 2^30.
+bool is_quantisable(std::span<const std::byte> values, float range) {
+  constexpr float kLargest = std::numeric_limits<float>::max() / 4;
+  if (!(range <= kLargest)) return false;
+  for (std::size_t at = 0; at < values.size(); at += sizeof(float))
+    if (!(std::abs(load_f32(values, at)) <= kLargest)) return false;
+  return true;
 }
 
 }  // namespace
 
-Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> corner_wedge,
-                                    const QuantizationGrids& grids, int compression_level) {
+bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids) {
+  if (!is_quantisable(std::as_bytes(std::span(mesh.positions)), grids.position.range)) return false;
+  for (std::size_t i = 0; i < mesh.attributes.size(); ++i)
+    if (mesh.attributes[i].type == ComponentType::Float32 &&
+        !is_quantisable(mesh.attributes[i].data, grids.attributes[i].range))
+      return false;
+  return true;
+}
+
+Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, DracoMethod method,
+                                    int compression_level) {
   try {
-    const MeshBuilder builder(mesh, corner_wedge);
+    const MeshBuilder builder(mesh);
     draco::ExpertEncoder encoder(builder.mesh());
     encoder.SetSpeedOptions(10 - compression_level, 10 - compression_level);
-    set_grid(encoder, builder.position_id(), grids.at("POSITION"));
-    for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
-      if (mesh.attributes[i].type != ComponentType::Float32) continue;
-      const QuantizationGrid& grid = grids.at(mesh.attributes[i].name);
-      if (mesh.attributes[i].name == "NORMAL")
-        encoder.SetAttributeQuantization(builder.attribute_ids()[i], grid.bits);
-      else
-        set_grid(encoder, builder.attribute_ids()[i], grid);
-    }
+    if (method == DracoMethod::Sequential) encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+    set_grids(encoder, builder, mesh, grids);
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeToBuffer(&buffer);
     if (!status.ok()) return fail(ErrorCode::InvalidArgument, text("Draco: ", status.error_msg_string()));

@@ -2,9 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
@@ -22,8 +20,17 @@ struct QuantizationGrid {
   double step() const { return static_cast<double>(range) / static_cast<double>((std::uint64_t{1} << bits) - 1); }
 };
 
-/// Grids by attribute name, "POSITION" included. NORMAL has its own octahedral form and only uses `bits`.
-using QuantizationGrids = std::map<std::string, QuantizationGrid>;
+/// The grids of a mesh. NORMAL has its own octahedral form and only uses `bits`; integers use none.
+struct QuantizationGrids {
+  QuantizationGrid position;
+  std::vector<QuantizationGrid> attributes;  ///< one for each attribute
+};
+
+/// How connectivity is coded.
+enum class DracoMethod {
+  Edgebreaker,  ///< small, in an order of points of its own
+  Sequential,   ///< keeps the order of points, for data that lies outside
+};
 
 /// What a primitive's Draco data holds.
 struct DracoPrimitive {
@@ -32,9 +39,13 @@ struct DracoPrimitive {
   std::vector<std::uint32_t> attribute_ids;  ///< unique ids, one per attribute of the mesh
 };
 
-/// Compresses some faces of a mesh. Float attributes are quantised in their grids, integers are kept exactly.
-/// `compression_level` is 0 to 10. Pre: corner_wedge is not empty. Errors: InvalidArgument with Draco's reason.
-Result<DracoPrimitive> encode_draco(const Mesh& mesh, std::span<const Index> corner_wedge,
-                                    const QuantizationGrids& grids, int compression_level);
+/// True if Draco can quantise all of a mesh's numbers: they are finite, and so is their range.
+bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids);
+
+/// Compresses a mesh. Float attributes are quantised in their grids, integers are kept exactly.
+/// `compression_level` is 0 to 10. Pre: `can_encode_draco`; there are faces; wedges and vertices stand in the order of
+/// their first use. Errors: InvalidArgument with Draco's reason.
+Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, DracoMethod method,
+                                    int compression_level);
 
 }  // namespace lodestone::detail

@@ -79,12 +79,13 @@ std::optional<ComponentType> component_type_of(std::size_t value) {
   }
 }
 
-/// Returns 1 to 4, or 0 for matrices and unknown types.
+/// Returns 1 to 4, 16 for the matrices of skins, or 0 for other matrices and unknown types.
 std::uint8_t component_count_of(std::string_view type) {
   if (type == "SCALAR") return 1;
   if (type == "VEC2") return 2;
   if (type == "VEC3") return 3;
   if (type == "VEC4") return 4;
+  if (type == "MAT4") return 16;
   return 0;
 }
 
@@ -222,6 +223,12 @@ Result<void> GltfDocument::load_buffers(std::vector<std::byte> binary_chunk, con
   return {};
 }
 
+std::size_t GltfDocument::expansion_limit() const {
+  std::size_t limit = kAlwaysAllowedBytes;
+  for (const auto& buffer : buffers_) limit += kMaxExpansion * buffer.size();
+  return limit;
+}
+
 /// Returns the bytes that buffer, byteOffset and byteLength of a bufferView (or of its extension) name.
 Result<std::span<const std::byte>> GltfDocument::slice_buffer(const Json& object, std::string_view where) const {
   LODESTONE_TRY(const std::size_t buffer, size_member(object, "buffer", where));
@@ -239,8 +246,7 @@ Result<std::span<const std::byte>> GltfDocument::slice_buffer(const Json& object
 
 Result<void> GltfDocument::decompress_views() {
   decompressed_views_.resize(count("bufferViews"));
-  std::size_t budget = kAlwaysAllowedBytes;
-  for (const auto& buffer : buffers_) budget += kMaxExpansion * buffer.size();
+  std::size_t budget = expansion_limit();
   for (std::size_t i = 0; i < decompressed_views_.size(); ++i) {
     LODESTONE_TRY(const Json* const view, element("bufferViews", "buffer view", i));
     const Json* extension = meshopt_extension(*view);
@@ -282,9 +288,7 @@ Result<AccessorData> GltfDocument::accessor(std::size_t index) const {
     LODESTONE_TRY(const BufferView view, buffer_view(view_index));
     LODESTONE_CHECK(gather(view, offset, data.count, data.element_bytes(), where, data.bytes));
   } else {
-    std::size_t limit = kAlwaysAllowedBytes;
-    for (const auto& buffer : buffers_) limit += kMaxExpansion * buffer.size();
-    if (data.count > limit / data.element_bytes())
+    if (data.count > expansion_limit() / data.element_bytes())
       return fail(ErrorCode::LimitExceeded, text(where, ": count ", data.count, " without a buffer view"));
     data.bytes.resize(data.count * data.element_bytes());
   }

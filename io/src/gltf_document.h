@@ -23,7 +23,7 @@ struct BufferView {
 /// The elements of an accessor, tightly packed, with sparse values applied.
 struct AccessorData {
   ComponentType type = ComponentType::Float32;
-  std::uint8_t component_count = 1;
+  std::uint8_t component_count = 1;  ///< 1 to 4, or 16 for a MAT4
   bool normalized = false;
   std::size_t count = 0;
   std::vector<std::byte> bytes;
@@ -40,6 +40,8 @@ class GltfDocument {
   static Result<GltfDocument> parse(std::span<const std::byte> bytes, const FileFetcher& fetch);
 
   const Json& json() const { return json_; }
+  /// The JSON to change. Pre: bufferViews stay as they are, and top-level arrays stay arrays of objects.
+  Json& edit() { return json_; }
 
   /// How many objects a top-level array has, e.g. count("meshes"); 0 where there is none.
   std::size_t count(const char* array) const;
@@ -50,6 +52,9 @@ class GltfDocument {
   Result<AccessorData> accessor(std::size_t index) const;
   /// Returns what the accessor declares, without its elements: those of Draco data have none of their own.
   Result<AccessorData> accessor_type(std::size_t index) const;
+
+  /// How many bytes may be made out of the document's own, so that a small file cannot ask for any amount.
+  std::size_t expansion_limit() const;
 
   /// The extension's object on some object of the document, or null.
   static const Json* extension(const Json& object, const char* name);

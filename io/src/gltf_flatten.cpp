@@ -177,14 +177,14 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
   return file;
 }
 
-Result<void> check_required_extensions(const GltfDocument& document) {
+Result<void> check_required_extensions(const GltfDocument& document, std::string_view understood) {
   const Json* required = find_member(document.json(), "extensionsRequired");
   if (required == nullptr) return {};
   if (!required->is_array()) return fail(ErrorCode::Malformed, "gltf: extensionsRequired is not an array");
   std::string unknown;
   for (const Json& item : *required) {
     const std::string name = item.is_string() ? item.get<std::string>() : "?";
-    if (!is_known(name)) unknown += (unknown.empty() ? "" : ", ") + name;
+    if (!is_known(name) && name != understood) unknown += (unknown.empty() ? "" : ", ") + name;
   }
   if (unknown.empty()) return {};
   return fail(ErrorCode::Unsupported, text("gltf: requires extensions that are not supported: ", unknown));

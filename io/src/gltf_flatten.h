@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 
 #include <lodestone/core/result.h>
 
@@ -17,6 +18,7 @@ namespace lodestone::detail {
 Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level);
 
 /// Returns an error for an extension that the document requires and that we would misread it without.
-Result<void> check_required_extensions(const GltfDocument& document);
+/// `understood` names one more that is no obstacle to the caller.
+Result<void> check_required_extensions(const GltfDocument& document, std::string_view understood = {});
 
 }  // namespace lodestone::detail

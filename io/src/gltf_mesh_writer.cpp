@@ -3,11 +3,11 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "bytes.h"
 #include "gltf_attribute.h"
-#include "text.h"
 
 namespace lodestone::detail {
 namespace {
@@ -21,54 +21,23 @@ std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_
   return out;
 }
 
-std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh) {
-  std::vector<Vec3f> positions;
-  positions.reserve(mesh.wedge_count());
-  for (const Index vertex : mesh.wedge_vertex) positions.push_back(mesh.positions[vertex]);
-  const std::size_t view = builder.add_view(std::as_bytes(std::span(positions)), ViewTarget::Vertices, sizeof(Vec3f));
-  auto [low, high] = position_bounds(positions);
-  return builder.add("accessors", {{"bufferView", view},
-                                   {"componentType", static_cast<int>(ComponentType::Float32)},
-                                   {"count", positions.size()},
-                                   {"type", "VEC3"},
-                                   {"min", std::move(low)},
-                                   {"max", std::move(high)}});
-}
-
-std::size_t add_attribute(GlbBuilder& builder, const Attribute& attribute) {
-  const std::size_t size = attribute.element_bytes(), stride = (size + 3) / 4 * 4;
-  const std::size_t view = builder.add_view(with_stride(attribute.data, size, stride), ViewTarget::Vertices, stride);
-  Json accessor = {{"bufferView", view},
-                   {"componentType", static_cast<int>(attribute.type)},
-                   {"count", attribute.data.size() / size},
-                   {"type", gltf_type(attribute.component_count)}};
-  if (attribute.normalized && attribute.type != ComponentType::Float32) accessor["normalized"] = true;
-  return builder.add("accessors", std::move(accessor));
-}
-
-Json add_vertices(GlbBuilder& builder, const Mesh& mesh) {
-  Json attributes = {{"POSITION", add_positions(builder, mesh)}};
-  for (const Attribute& attribute : mesh.attributes) {
-    const auto semantic = gltf_semantic(attribute);
-    if (!semantic) continue;
-    attributes[semantic->name] = add_attribute(builder, attribute);
-    if (semantic->needs_quantization) builder.require_extension("KHR_mesh_quantization");
+/// Numbers the things that faces use, in order of first use.
+class Compaction {
+ public:
+  explicit Compaction(std::size_t count) : number_(count, kNoIndex) {}
+  Index add(Index thing) {
+    if (number_[thing] == kNoIndex) {
+      number_[thing] = static_cast<Index>(used_.size());
+      used_.push_back(thing);
+    }
+    return number_[thing];
   }
-  return attributes;
-}
+  std::span<const Index> used() const { return used_; }
 
-/// 16 bits where they suffice; the largest value of a type is not an index.
-std::size_t add_indices(GlbBuilder& builder, std::span<const Index> indices, std::size_t point_count) {
-  const bool narrow = point_count <= 0xffff;
-  const std::vector<std::uint16_t> shorts(indices.begin(), narrow ? indices.end() : indices.begin());
-  const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
-  const std::size_t view = builder.add_view(bytes, ViewTarget::Indices);
-  return builder.add("accessors",
-                     {{"bufferView", view},
-                      {"componentType", static_cast<int>(narrow ? ComponentType::UInt16 : ComponentType::UInt32)},
-                      {"count", indices.size()},
-                      {"type", "SCALAR"}});
-}
+ private:
+  std::vector<Index> number_;
+  std::vector<Index> used_;
+};
 
 /// Copies the wedges of `mesh` to their new numbers in `out`; ~0 means that no face uses one.
 void renumber_wedges(const Mesh& mesh, std::span<const unsigned> new_number, std::size_t used, Mesh& out) {
@@ -103,35 +72,6 @@ std::vector<FacesOfMaterial> split_by_material(const Mesh& mesh) {
   return out;
 }
 
-MaterialTable::MaterialTable(GlbBuilder& builder, const std::set<Index>& numbers) {
-  for (const Index number : numbers)
-    if (number != 0)
-      index_of_[number] =
-          builder.add("materials", {{"name", text("material ", number)},
-                                    {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}});
-}
-
-void MaterialTable::assign(Json& primitive, Index number) const {
-  if (number != 0) primitive["material"] = index_of_.at(number);
-}
-
-std::optional<std::size_t> add_plain_mesh(GlbBuilder& builder, const Mesh& mesh, const std::string& name,
-                                          const MaterialTable& materials) {
-  if (mesh.face_count() == 0) return std::nullopt;
-  const Json attributes = add_vertices(builder, mesh);
-  Json primitives = Json::array();
-  for (const FacesOfMaterial& group : split_by_material(mesh)) {
-    Json primitive = {{"attributes", attributes},
-                      {"indices", add_indices(builder, group.corner_wedge, mesh.wedge_count())}};
-    materials.assign(primitive, group.material);
-    primitives.push_back(std::move(primitive));
-  }
-  Json object;
-  if (!name.empty()) object["name"] = name;
-  object["primitives"] = std::move(primitives);
-  return builder.add("meshes", std::move(object));
-}
-
 Mesh in_hardware_order(const Mesh& mesh) {
   Mesh out;
   out.positions = mesh.positions;
@@ -149,13 +89,86 @@ Mesh in_hardware_order(const Mesh& mesh) {
   return out;
 }
 
-std::pair<Json, Json> position_bounds(std::span<const Vec3f> positions) {
-  Vec3f low = positions[0], high = positions[0];
-  for (const Vec3f& p : positions) {
+Mesh with_attributes(const Mesh& mesh, std::span<const Attribute* const> attributes) {
+  Mesh out{mesh.positions, mesh.wedge_vertex, mesh.corner_wedge, mesh.face_material, {}};
+  for (const Attribute* attribute : attributes) out.attributes.push_back(*attribute);
+  return out;
+}
+
+Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<const Attribute* const> attributes) {
+  Compaction wedges(mesh.wedge_count()), vertices(mesh.vertex_count());
+  Mesh out;
+  for (const Index wedge : corner_wedge) out.corner_wedge.push_back(wedges.add(wedge));
+  for (const Index wedge : wedges.used()) out.wedge_vertex.push_back(vertices.add(mesh.wedge_vertex[wedge]));
+  for (const Index vertex : vertices.used()) out.positions.push_back(mesh.positions[vertex]);
+  for (const Attribute* source : attributes) {
+    Attribute a{source->name, source->type, source->component_count, source->normalized, {}};
+    const std::size_t size = a.element_bytes();
+    a.data.reserve(wedges.used().size() * size);
+    for (const Index wedge : wedges.used()) append_bytes(a.data, std::span(source->data).subspan(wedge * size, size));
+    out.attributes.push_back(std::move(a));
+  }
+  return out;
+}
+
+std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh) {
+  std::vector<Vec3f> positions;
+  positions.reserve(mesh.wedge_count());
+  for (const Index vertex : mesh.wedge_vertex) positions.push_back(mesh.positions[vertex]);
+  const auto bytes = std::as_bytes(std::span(positions));
+  Json accessor = {{"bufferView", builder.add_view(bytes, ViewTarget::Vertices, sizeof(Vec3f))},
+                   {"componentType", static_cast<int>(ComponentType::Float32)},
+                   {"count", positions.size()},
+                   {"type", "VEC3"}};
+  set_bounds(accessor, bytes);
+  return builder.add("accessors", std::move(accessor));
+}
+
+std::size_t add_attribute(GlbBuilder& builder, const Attribute& attribute) {
+  const std::size_t size = attribute.element_bytes(), stride = (size + 3) / 4 * 4;
+  const std::size_t view = builder.add_view(with_stride(attribute.data, size, stride), ViewTarget::Vertices, stride);
+  Json accessor = {{"bufferView", view},
+                   {"componentType", static_cast<int>(attribute.type)},
+                   {"count", attribute.data.size() / size},
+                   {"type", gltf_type(attribute.component_count)}};
+  if (attribute.normalized && attribute.type != ComponentType::Float32) accessor["normalized"] = true;
+  return builder.add("accessors", std::move(accessor));
+}
+
+std::size_t add_indices(GlbBuilder& builder, std::span<const Index> indices, std::size_t point_count) {
+  const bool narrow = point_count <= 0xffff;  // The largest value of a type is not an index.
+  const std::vector<std::uint16_t> shorts(indices.begin(), narrow ? indices.end() : indices.begin());
+  const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
+  const std::size_t view = builder.add_view(bytes, ViewTarget::Indices);
+  return builder.add("accessors",
+                     {{"bufferView", view},
+                      {"componentType", static_cast<int>(narrow ? ComponentType::UInt16 : ComponentType::UInt32)},
+                      {"count", indices.size()},
+                      {"type", "SCALAR"}});
+}
+
+Json attribute_accessor(const AccessorData& data) {
+  Json accessor = {
+      {"componentType", static_cast<int>(data.type)}, {"count", data.count}, {"type", gltf_type(data.component_count)}};
+  if (data.normalized && data.type != ComponentType::Float32) accessor["normalized"] = true;
+  return accessor;
+}
+
+Json position_accessor(const AccessorData& data) {
+  Json accessor = attribute_accessor(data);
+  set_bounds(accessor, data.bytes);
+  return accessor;
+}
+
+void set_bounds(Json& accessor, std::span<const std::byte> positions) {
+  Vec3f low = load<Vec3f>(positions, 0), high = low;
+  for (std::size_t at = sizeof(Vec3f); at < positions.size(); at += sizeof(Vec3f)) {
+    const auto p = load<Vec3f>(positions, at);
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  return {Json::array({low.x, low.y, low.z}), Json::array({high.x, high.y, high.z})};
+  accessor["min"] = {low.x, low.y, low.z};
+  accessor["max"] = {high.x, high.y, high.z};
 }
 
 }  // namespace lodestone::detail

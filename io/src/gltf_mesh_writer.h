@@ -1,17 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
-#include <optional>
-#include <set>
 #include <span>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
-#include <lodestone/core/result.h>
 
 #include "glb_builder.h"
+#include "gltf_document.h"
 
 namespace lodestone::detail {
 
@@ -24,27 +21,27 @@ struct FacesOfMaterial {
 /// Splits a mesh's faces by material, ascending. Empty for a mesh without faces.
 std::vector<FacesOfMaterial> split_by_material(const Mesh& mesh);
 
-/// The document's materials: a plain one for each number that faces use, in ascending order; 0 stands for none.
-class MaterialTable {
- public:
-  MaterialTable(GlbBuilder& builder, const std::set<Index>& numbers);
-  /// Sets the primitive's material. Pre: the number is one of the table's, or 0.
-  void assign(Json& primitive, Index number) const;
+/// Returns the mesh with only some of its attributes, in the order given.
+Mesh with_attributes(const Mesh& mesh, std::span<const Attribute* const> attributes);
 
- private:
-  std::map<Index, std::size_t> index_of_;
-};
-
-/// Writes a mesh uncompressed: one vertex buffer, one primitive per material. Returns the mesh's index, or nothing for
-/// a mesh without faces, which glTF has no form for.
-std::optional<std::size_t> add_plain_mesh(GlbBuilder& builder, const Mesh& mesh, const std::string& name,
-                                          const MaterialTable& materials);
+/// Returns some faces of a mesh as one of their own, without materials and with only some of its attributes: wedges and
+/// vertices in the order in which the faces use them.
+Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<const Attribute* const> attributes);
 
 /// Returns the mesh with faces and wedges in an order that graphics hardware likes: the vertex cache's, then the order
 /// of first use. Faces of one material stay together.
 Mesh in_hardware_order(const Mesh& mesh);
 
-/// Returns min and max of positions as glTF wants them beside a POSITION accessor. Pre: there is at least one.
-std::pair<Json, Json> position_bounds(std::span<const Vec3f> positions);
+/// Write elements for every wedge, or indices, uncompressed. Return the accessor's index.
+std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh);
+std::size_t add_attribute(GlbBuilder& builder, const Attribute& attribute);
+std::size_t add_indices(GlbBuilder& builder, std::span<const Index> indices, std::size_t point_count);
+
+/// Return the accessor of data that is not stored in it: of Draco data. That of positions has min and max.
+Json attribute_accessor(const AccessorData& data);
+Json position_accessor(const AccessorData& data);
+
+/// Sets min and max as glTF wants them of positions, from tightly packed floats x, y, z. Pre: there is at least one.
+void set_bounds(Json& accessor, std::span<const std::byte> positions);
 
 }  // namespace lodestone::detail

@@ -41,9 +41,10 @@ Result<std::vector<Vec3f>> to_positions(const AccessorData& data, const std::str
   return positions;
 }
 
-/// Directions are turned with the scene and so have to be floats; everything else is only moved.
-Attribute to_attribute(const std::string& name, const AccessorData& data) {
-  if (name == "NORMAL" || name == "TANGENT") return float_attribute(name, data.component_count, to_floats(data));
+/// Directions are turned with a flattened scene and so have to be floats; everything else is only moved.
+Attribute to_attribute(const std::string& name, const AccessorData& data, PrimitiveContent content) {
+  const bool turns = content == PrimitiveContent::Surface && (name == "NORMAL" || name == "TANGENT");
+  if (turns) return float_attribute(name, data.component_count, to_floats(data));
   return {name, data.type, data.component_count, data.normalized, data.bytes};
 }
 
@@ -108,6 +109,7 @@ void drop_unused_points(Primitive& primitive) {
   if (kept.size() == new_number.size()) return;
   for (Index& point : primitive.indices) point = new_number[point];
   for (Attribute& attribute : primitive.attributes) attribute = pick(attribute, kept);
+  for (Attribute& target : primitive.targets) target = pick(target, kept);
   for (std::size_t i = 0; i < kept.size(); ++i) primitive.positions[i] = primitive.positions[kept[i]];
   primitive.positions.resize(kept.size());
 }
@@ -119,17 +121,20 @@ Result<Index> material_number(const Json& primitive, const GltfDocument& documen
   return static_cast<Index>(material + 1);
 }
 
-Result<void> add_attribute(Primitive& primitive, const std::string& name, const AccessorData& data,
-                           const std::string& where) {
-  if (name == "POSITION") return {};
-  if (data.count != primitive.positions.size())
-    return fail(ErrorCode::Malformed, text(where, ": ", name, " has ", data.count, " elements for ",
-                                           primitive.positions.size(), " positions"));
-  primitive.attributes.push_back(to_attribute(name, data));
-  return {};
+Result<void> check_attribute(const Primitive& primitive, const std::string& name, const AccessorData& data,
+                             const std::string& where) {
+  if (data.component_count > 4)
+    return fail(ErrorCode::Unsupported, text(where, ": ", name, " has ", int{data.component_count}, " components"));
+  if (data.count == primitive.positions.size()) return {};
+  return fail(ErrorCode::Malformed,
+              text(where, ": ", name, " has ", data.count, " elements for ", primitive.positions.size(), " positions"));
 }
 
 }  // namespace
+
+std::string target_attribute_name(std::size_t target, const std::string& semantic) {
+  return text("TARGET_", target, ':', semantic);
+}
 
 Result<std::vector<Primitive>> PrimitiveReader::read_mesh(std::size_t mesh) {
   accessors_.clear();
@@ -148,15 +153,47 @@ Result<std::vector<Primitive>> PrimitiveReader::read_mesh(std::size_t mesh) {
       ++omissions_.points_and_lines;
       continue;
     }
-    if (const Json* targets = find_member(item, "targets")) omissions_.morph_targets += targets->size();
     const Json* draco = draco_extension(item);
     LODESTONE_TRY(Primitive primitive,
                   draco != nullptr ? read_draco(item, *draco, mode, where) : read_plain(item, mode, where));
     LODESTONE_TRY(primitive.material, material_number(item, document_, where));
+    LODESTONE_CHECK(add_targets(primitive, item, where));
+    primitive.number = i;
     drop_unused_points(primitive);
     primitives.push_back(std::move(primitive));
   }
   return primitives;
+}
+
+Result<void> PrimitiveReader::add_attribute(Primitive& primitive, const std::string& name, const AccessorData& data,
+                                            const std::string& where) const {
+  if (name == "POSITION") return {};
+  LODESTONE_CHECK(check_attribute(primitive, name, data, where));
+  primitive.attributes.push_back(to_attribute(name, data, content_));
+  return {};
+}
+
+Result<void> PrimitiveReader::add_targets(Primitive& primitive, const Json& json, const std::string& where) {
+  const Json* targets = find_member(json, "targets");
+  if (targets == nullptr) return {};
+  if (!targets->is_array()) return fail(ErrorCode::Malformed, where + ": targets is not an array");
+  if (content_ == PrimitiveContent::Surface) {
+    omissions_.morph_targets += targets->size();
+    return {};
+  }
+  for (std::size_t i = 0; i < targets->size(); ++i) {
+    const Json& target = (*targets)[i];
+    const std::string target_where = text(where, " target ", i);
+    if (!target.is_object()) return fail(ErrorCode::Malformed, target_where + ": is not an object");
+    for (const auto& [semantic, unused] : target.items()) {
+      LODESTONE_TRY(const std::size_t index, size_member(target, semantic.c_str(), target_where));
+      LODESTONE_TRY(const AccessorData* const data, accessor(index));
+      LODESTONE_CHECK(check_attribute(primitive, semantic, *data, target_where));
+      primitive.targets.push_back(
+          float_attribute(target_attribute_name(i, semantic), data->component_count, to_floats(*data)));
+    }
+  }
+  return {};
 }
 
 Result<const AccessorData*> PrimitiveReader::accessor(std::size_t index) {
@@ -224,6 +261,20 @@ Result<Primitive> PrimitiveReader::read_draco(const Json& json, const Json& exte
 
 namespace {
 
+Result<std::vector<std::size_t>> target_accessors(const Json& primitive, const std::string& where) {
+  std::vector<std::size_t> accessors;
+  const Json* targets = find_member(primitive, "targets");
+  if (targets == nullptr || !targets->is_array()) return accessors;
+  for (const Json& target : *targets) {
+    if (!target.is_object()) continue;
+    for (const auto& [name, unused] : target.items()) {
+      LODESTONE_TRY(const std::size_t index, size_member(target, name.c_str(), where));
+      accessors.push_back(index);
+    }
+  }
+  return accessors;
+}
+
 /// Lists the objects of a primitive that name a bufferView: its accessors and its Draco data.
 Result<std::vector<const Json*>> view_holders(const GltfDocument& document, const Json& primitive,
                                               const std::string& where) {
@@ -233,6 +284,11 @@ Result<std::vector<const Json*>> view_holders(const GltfDocument& document, cons
     LODESTONE_TRY(accessors["indices"], size_member(primitive, "indices", where));
   }
   for (const auto& [name, index] : accessors) {
+    LODESTONE_TRY(const Json* const accessor, document.element("accessors", "accessor", index));
+    holders.push_back(accessor);
+  }
+  LODESTONE_TRY(const auto targets, target_accessors(primitive, where));
+  for (const std::size_t index : targets) {
     LODESTONE_TRY(const Json* const accessor, document.element("accessors", "accessor", index));
     holders.push_back(accessor);
   }

@@ -65,18 +65,43 @@ Result<NodeGraph> read_graph(const GltfDocument& document) {
   return graph;
 }
 
-Result<std::vector<std::size_t>> find_roots(const GltfDocument& document, const NodeGraph& graph) {
-  if (document.count("scenes") > 0) {
-    LODESTONE_TRY(const std::size_t index, size_member_or(document.json(), "scene", 0, "gltf"));
-    LODESTONE_TRY(const Json* const scene, document.element("scenes", "scene", index));
-    LODESTONE_TRY(auto roots, size_array_member(*scene, "nodes", text("scene ", index)));
-    for (const std::size_t root : roots) LODESTONE_CHECK(check_node(root, graph.parent.size(), text("scene ", index)));
-    return roots;
-  }
+std::vector<std::size_t> roots_of(const NodeGraph& graph) {
   std::vector<std::size_t> roots;
   for (std::size_t i = 0; i < graph.parent.size(); ++i)
     if (graph.parent[i] == kNoNode) roots.push_back(i);
   return roots;
+}
+
+Result<std::vector<std::size_t>> scene_roots(const GltfDocument& document, const NodeGraph& graph, std::size_t index) {
+  LODESTONE_TRY(const Json* const scene, document.element("scenes", "scene", index));
+  LODESTONE_TRY(auto roots, size_array_member(*scene, "nodes", text("scene ", index)));
+  for (const std::size_t root : roots) LODESTONE_CHECK(check_node(root, graph.parent.size(), text("scene ", index)));
+  return roots;
+}
+
+Result<std::vector<std::size_t>> find_roots(const GltfDocument& document, const NodeGraph& graph) {
+  if (document.count("scenes") > 0) {
+    LODESTONE_TRY(const std::size_t index, size_member_or(document.json(), "scene", 0, "gltf"));
+    return scene_roots(document, graph, index);
+  }
+  return roots_of(graph);
+}
+
+/// Marks what stands below the roots of any scene.
+Result<void> mark_shown(const GltfDocument& document, const NodeGraph& graph, std::vector<NodePlace>& places) {
+  std::vector<std::size_t> stack;
+  for (std::size_t i = 0; i < document.count("scenes"); ++i) {
+    LODESTONE_TRY(const auto roots, scene_roots(document, graph, i));
+    stack.insert(stack.end(), roots.begin(), roots.end());
+  }
+  if (document.count("scenes") == 0) stack = roots_of(graph);
+  while (!stack.empty()) {
+    const std::size_t node = stack.back();
+    stack.pop_back();
+    if (std::exchange(places[node].shown, true)) continue;
+    stack.insert(stack.end(), graph.children[node].begin(), graph.children[node].end());
+  }
+  return {};
 }
 
 Result<Transform> local_transform(const Json& node, std::string_view where) {
@@ -173,15 +198,32 @@ Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document
   return Walk(document, graph, level).run(roots);
 }
 
-Result<std::vector<std::size_t>> first_lod_chain(const GltfDocument& document) {
+Result<std::vector<NodePlace>> place_nodes(const GltfDocument& document) {
   LODESTONE_TRY(const NodeGraph graph, read_graph(document));
+  std::vector<NodePlace> places(graph.parent.size());
+  LODESTONE_CHECK(mark_shown(document, graph, places));
+  std::vector<std::size_t> stack = roots_of(graph);
+  while (!stack.empty()) {
+    const std::size_t index = stack.back();
+    stack.pop_back();
+    LODESTONE_TRY(const Json* const node, document.element("nodes", "node", index));
+    LODESTONE_TRY(const Transform local, local_transform(*node, text("node ", index)));
+    const std::size_t parent = graph.parent[index];
+    places[index].world = parent == kNoNode ? local : places[parent].world * local;
+    stack.insert(stack.end(), graph.children[index].begin(), graph.children[index].end());
+  }
+  return places;
+}
+
+Result<std::vector<std::vector<std::size_t>>> lod_chains(const GltfDocument& document) {
+  LODESTONE_TRY(const NodeGraph graph, read_graph(document));
+  std::vector<std::vector<std::size_t>> chains;
   for (std::size_t i = 0; i < graph.lower_levels.size(); ++i) {
     if (graph.lower_levels[i].empty()) continue;
-    std::vector<std::size_t> chain{i};
-    chain.insert(chain.end(), graph.lower_levels[i].begin(), graph.lower_levels[i].end());
-    return chain;
+    chains.push_back({i});
+    chains.back().insert(chains.back().end(), graph.lower_levels[i].begin(), graph.lower_levels[i].end());
   }
-  return std::vector<std::size_t>{};
+  return chains;
 }
 
 }  // namespace lodestone::detail

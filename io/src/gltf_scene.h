@@ -29,7 +29,16 @@ Result<std::size_t> level_count(const GltfDocument& document);
 /// Errors: Malformed for nodes that do not exist, have two parents or are their own ancestors.
 Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document, std::size_t level);
 
-/// Returns the first node that has levels of detail by MSFT_lod, as [finest, …, coarsest]; empty where there is none.
-Result<std::vector<std::size_t>> first_lod_chain(const GltfDocument& document);
+/// Where a node stands.
+struct NodePlace {
+  Transform world;
+  bool shown = false;  ///< it stands in a scene; in a document without scenes every node does
+};
+
+/// Places every node, whatever scenes it stands in. Errors: as above.
+Result<std::vector<NodePlace>> place_nodes(const GltfDocument& document);
+
+/// Returns the nodes of each MSFT_lod as [finest, …, coarsest], in the order of the finest ones.
+Result<std::vector<std::vector<std::size_t>>> lod_chains(const GltfDocument& document);
 
 }  // namespace lodestone::detail

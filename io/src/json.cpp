@@ -29,16 +29,6 @@ std::size_t nesting_depth(std::string_view text) {
   return deepest;
 }
 
-/// Writers of glTF are known to say 3.0 for 3.
-std::optional<std::size_t> as_size(const Json& value) {
-  constexpr double kLargest = 9007199254740992.0;  // 2^53: beyond it doubles skip whole numbers
-  if (value.is_number_unsigned()) return value.get<std::size_t>();
-  if (!value.is_number_float()) return std::nullopt;
-  const double number = value.get<double>();
-  if (!(number >= 0 && number <= kLargest) || number != std::floor(number)) return std::nullopt;
-  return static_cast<std::size_t>(number);
-}
-
 tl::unexpected<Error> wrong(std::string_view where, const char* key, const Json& value, const char* expected) {
   std::string shown =
       value.is_structured() ? value.type_name() : value.dump(-1, ' ', true, Json::error_handler_t::replace);
@@ -47,6 +37,16 @@ tl::unexpected<Error> wrong(std::string_view where, const char* key, const Json&
 }
 
 }  // namespace
+
+std::optional<std::size_t> as_size(const Json& value) {
+  // Writers of glTF are known to say 3.0 for 3.
+  constexpr double kLargest = 9007199254740992.0;  // 2^53: beyond it doubles skip whole numbers
+  if (value.is_number_unsigned()) return value.get<std::size_t>();
+  if (!value.is_number_float()) return std::nullopt;
+  const double number = value.get<double>();
+  if (!(number >= 0 && number <= kLargest) || number != std::floor(number)) return std::nullopt;
+  return static_cast<std::size_t>(number);
+}
 
 Result<Json> parse_json(std::string_view source) {
   if (const std::size_t depth = nesting_depth(source); depth > kMaxDepth)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,9 @@ Result<Json> parse_json(std::string_view text);
 
 /// Returns the member of an object, or null where there is none or `value` is no object.
 const Json* find_member(const Json& value, const char* key);
+
+/// Returns a whole number ≥ 0; nothing for any other value.
+std::optional<std::size_t> as_size(const Json& value);
 
 /// Returns a member that must be a whole number ≥ 0. `where` names the object for messages, e.g. "accessor 3".
 Result<std::size_t> size_member(const Json& object, const char* key, std::string_view where);

@@ -1,5 +1,9 @@
 #include <lodestone/io/asset.h>
 
+#include <algorithm>
+#include <cmath>
+#include <set>
+
 #include <lodestone/core/assemble.h>
 #include <lodestone/io/file.h>
 
@@ -24,16 +28,35 @@ Result<GltfDocument> read_document(std::span<const std::byte> bytes) {
   return document;
 }
 
-/// Fills in what the extras of a level's node say.
-void read_numbers(const Json& node, Asset::Level& level) {
-  const Json* extras = find_member(node, "extras");
-  const Json* numbers = extras != nullptr ? find_member(*extras, "lodestone") : nullptr;
-  if (numbers == nullptr) return;
-  level.maximum_deviation = number_member(*numbers, "maximum_deviation", 0);
-  level.mean_deviation = number_member(*numbers, "mean_deviation", 0);
-  level.rms_deviation = number_member(*numbers, "rms_deviation", 0);
-  level.curvature_error = number_member(*numbers, "curvature_error", 0);
-}
+/// Adds up what the extras of many nodes say of one level.
+class LevelNumbers {
+ public:
+  /// `scale` and `area` of a node's mesh stand with all its levels; files of one mesh may lack them.
+  void add(const Json& node) {
+    const Json* extras = find_member(node, "extras");
+    const Json* numbers = extras != nullptr ? find_member(*extras, "lodestone") : nullptr;
+    if (numbers == nullptr) return;
+    const double scale = number_member(*numbers, "world_scale", 1), area = number_member(*numbers, "world_area", 1);
+    const double rms = number_member(*numbers, "rms_deviation", 0) * scale;
+    maximum_ = std::max(maximum_, number_member(*numbers, "maximum_deviation", 0) * scale);
+    curvature_error_ = std::max(curvature_error_, number_member(*numbers, "curvature_error", 0));
+    mean_ += number_member(*numbers, "mean_deviation", 0) * scale * area;
+    squares_ += rms * rms * area;
+    area_ += area;
+  }
+
+  void store(Asset::Level& level) const {
+    level.maximum_deviation = maximum_;
+    level.curvature_error = curvature_error_;
+    if (!(area_ > 0)) return;
+    level.mean_deviation = mean_ / area_;
+    level.rms_deviation = std::sqrt(squares_ / area_);
+  }
+
+ private:
+  double maximum_ = 0, curvature_error_ = 0;
+  double mean_ = 0, squares_ = 0, area_ = 0;
+};
 
 /// Returns the entry of MSFT_screencoverage on the finest node; 0 where there is none.
 double screen_coverage(const Json& finest, std::size_t level) {
@@ -43,8 +66,13 @@ double screen_coverage(const Json& finest, std::size_t level) {
   return (*list)[level].get<double>();
 }
 
-Result<std::uint64_t> stored_bytes(const GltfDocument& document, std::size_t mesh) {
-  LODESTONE_TRY(const auto views, geometry_views(document, mesh));
+/// Returns the bytes of the bufferViews that the meshes' geometry lies in, each view once.
+Result<std::uint64_t> stored_bytes(const GltfDocument& document, const std::set<std::size_t>& meshes) {
+  std::set<std::size_t> views;
+  for (const std::size_t mesh : meshes) {
+    LODESTONE_TRY(const auto of_mesh, geometry_views(document, mesh));
+    views.insert(of_mesh.begin(), of_mesh.end());
+  }
   std::uint64_t bytes = 0;
   for (const std::size_t view : views) {
     LODESTONE_TRY(const Json* const json, document.element("bufferViews", "buffer view", view));
@@ -54,41 +82,46 @@ Result<std::uint64_t> stored_bytes(const GltfDocument& document, std::size_t mes
   return bytes;
 }
 
-Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, std::span<const std::size_t> chain) {
+using Chains = std::vector<std::vector<std::size_t>>;
+
+Result<void> read_numbers(const GltfDocument& document, std::size_t index, const Chains& chains, Asset::Level& level) {
+  LevelNumbers numbers;
+  for (const auto& chain : chains) {
+    LODESTONE_TRY(const Json* const node, document.element("nodes", "node", chain[std::min(index, chain.size() - 1)]));
+    numbers.add(*node);
+    LODESTONE_TRY(const Json* const finest, document.element("nodes", "node", chain[0]));
+    level.screen_coverage = std::max(level.screen_coverage, screen_coverage(*finest, index));
+  }
+  numbers.store(level);
+  return {};
+}
+
+Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, const Chains& chains) {
   Asset::Level level;
   LODESTONE_TRY(const SoupFile file, flatten_scene(document, index));
   LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup));
   level.mesh = std::move(assembled.mesh);
 
   LODESTONE_TRY(const auto instances, collect_instances(document, index));
-  for (const MeshInstance& instance : instances) {
-    LODESTONE_TRY(const std::uint64_t bytes, stored_bytes(document, instance.mesh));
-    level.byte_length += bytes;
-    level.draco |= uses_draco(document, instance.mesh);
-  }
-  std::size_t node = index < chain.size() ? chain[index] : kNoNode;
-  if (node == kNoNode && !instances.empty()) node = instances[0].node;
-  if (node == kNoNode) return level;
-  LODESTONE_TRY(const Json* const json, document.element("nodes", "node", node));
-  read_numbers(*json, level);
-  if (!chain.empty()) {
-    LODESTONE_TRY(const Json* const finest, document.element("nodes", "node", chain[0]));
-    level.screen_coverage = screen_coverage(*finest, index);
-  }
+  std::set<std::size_t> meshes;
+  for (const MeshInstance& instance : instances) meshes.insert(instance.mesh);
+  for (const std::size_t mesh : meshes) level.draco |= uses_draco(document, mesh);
+  LODESTONE_TRY(level.byte_length, stored_bytes(document, meshes));
+  LODESTONE_CHECK(read_numbers(document, index, chains, level));
   return level;
 }
 
-/// Returns the first mesh's removal stream, empty where no mesh has one.
-Result<std::vector<std::byte>> find_stream(const GltfDocument& document) {
+Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document) {
+  std::vector<Asset::Stream> streams;
   for (std::size_t i = 0; i < document.count("meshes"); ++i) {
     LODESTONE_TRY(const Json* const mesh, document.element("meshes", "mesh", i));
     const Json* extension = GltfDocument::extension(*mesh, kStreamExtension);
     if (extension == nullptr) continue;
     LODESTONE_TRY(const std::size_t view_index, size_member(*extension, "bufferView", kStreamExtension));
     LODESTONE_TRY(const BufferView view, document.buffer_view(view_index));
-    return std::vector<std::byte>(view.bytes.begin(), view.bytes.end());
+    streams.push_back({string_member(*mesh, "name"), {view.bytes.begin(), view.bytes.end()}});
   }
-  return std::vector<std::byte>{};
+  return streams;
 }
 
 Error with_path(Error error, const std::filesystem::path& path) {
@@ -101,13 +134,13 @@ Error with_path(Error error, const std::filesystem::path& path) {
 Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
   LODESTONE_TRY(const GltfDocument document, read_document(bytes));
   LODESTONE_TRY(const std::size_t count, level_count(document));
-  LODESTONE_TRY(const auto chain, first_lod_chain(document));
+  LODESTONE_TRY(const auto chains, lod_chains(document));
   Asset asset;
   for (std::size_t i = 0; i < count; ++i) {
-    LODESTONE_TRY(Asset::Level level, read_level(document, i, chain));
+    LODESTONE_TRY(Asset::Level level, read_level(document, i, chains));
     asset.levels.push_back(std::move(level));
   }
-  LODESTONE_TRY(asset.stream, find_stream(document));
+  LODESTONE_TRY(asset.streams, read_streams(document));
   asset.total_bytes = bytes.size();
   return asset;
 }
@@ -115,14 +148,6 @@ Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
 Result<Asset> read_asset(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
   return read_asset_bytes(bytes).map_error([&](Error error) { return with_path(std::move(error), path); });
-}
-
-Result<std::vector<std::byte>> read_asset_stream(const std::filesystem::path& path) {
-  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  const auto stream = read_document(bytes).and_then(find_stream);
-  if (!stream) return tl::unexpected<Error>(with_path(stream.error(), path));
-  if (stream->empty()) return fail(ErrorCode::Unsupported, text('\'', path, "': holds no removal stream"));
-  return *stream;
 }
 
 }  // namespace lodestone

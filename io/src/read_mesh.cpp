@@ -58,7 +58,9 @@ Result<MeshFile> read(std::span<const std::byte> bytes, const std::string& exten
   return MeshFile{std::move(assembled.mesh), assembled.report, std::move(file.notes)};
 }
 
-std::string extension_of(const std::filesystem::path& path) {
+}  // namespace
+
+std::string detail::extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   if (!extension.empty()) extension.erase(0, 1);
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -66,7 +68,9 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
-}  // namespace
+bool detail::is_gltf(std::span<const std::byte> bytes, std::string_view extension) {
+  return detect_format(bytes, extension) == Format::Gltf;
+}
 
 Result<MeshFile> read_mesh(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));

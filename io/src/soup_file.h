@@ -28,6 +28,12 @@ Result<SoupFile> read_gltf(std::span<const std::byte> bytes, const FileFetcher& 
 /// Reads any other format Assimp knows; `extension` is without the dot.
 Result<SoupFile> read_with_assimp(std::span<const std::byte> bytes, const std::string& extension);
 
+/// True for what `read_mesh` takes for glTF: by content, then by extension (lower case, without the dot).
+bool is_gltf(std::span<const std::byte> bytes, std::string_view extension);
+
+/// Returns a path's extension in lower case, without the dot.
+std::string extension_of(const std::filesystem::path& path);
+
 /// Gives float normals length 1 where they miss it by more than rounding, and a direction where they have none:
 /// writers may then rely on the rule of glTF that normals are unit vectors. Pre: indices are in range.
 void tidy_normals(SoupFile& file);

@@ -1,5 +1,8 @@
 #include "transform.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lodestone::detail {
 namespace {
 
@@ -26,9 +29,25 @@ Transform operator*(const Transform& a, const Transform& b) {
 
 bool Transform::mirrors() const { return dot(row(*this, 0), cross(row(*this, 1), row(*this, 2))) < 0; }
 
-Vec3f Transform::point(const Vec3f& p) const {
-  if (is_identity()) return p;
-  return to_float(apply_linear(*this, Vec3(p)) + Vec3(rows[0][3], rows[1][3], rows[2][3]));
+double Transform::stretch() const {
+  // The largest eigenvalue of AᵀA: O. K. Smith, "Eigenvalues of a symmetric 3 × 3 matrix", Comm. ACM 4(4), 1961.
+  const auto gram = [&](int i, int j) {
+    return rows[0][i] * rows[0][j] + rows[1][i] * rows[1][j] + rows[2][i] * rows[2][j];
+  };
+  const double a = gram(0, 0), b = gram(1, 1), c = gram(2, 2), d = gram(0, 1), e = gram(1, 2), f = gram(0, 2);
+  const double off_diagonal = d * d + e * e + f * f;
+  if (off_diagonal == 0) return std::sqrt(std::max({a, b, c}));
+  const double q = (a + b + c) / 3;
+  const double p = std::sqrt(((a - q) * (a - q) + (b - q) * (b - q) + (c - q) * (c - q) + 2 * off_diagonal) / 6);
+  const Vec3 r0 = Vec3(a - q, d, f) * (1 / p), r1 = Vec3(d, b - q, e) * (1 / p), r2 = Vec3(f, e, c - q) * (1 / p);
+  const double angle = std::acos(std::clamp(dot(r0, cross(r1, r2)) / 2, -1.0, 1.0)) / 3;
+  return std::sqrt(q + 2 * p * std::cos(angle));
+}
+
+Vec3f Transform::point(const Vec3f& p) const { return is_identity() ? p : to_float(exact_point(Vec3(p))); }
+
+Vec3 Transform::exact_point(const Vec3& p) const {
+  return apply_linear(*this, p) + Vec3(rows[0][3], rows[1][3], rows[2][3]);
 }
 
 Vec3f Transform::direction(const Vec3f& d) const {

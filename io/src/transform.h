@@ -16,8 +16,12 @@ struct Transform {
   bool is_identity() const { return *this == Transform{}; }
   /// True if the map turns a shape into its mirror image, so that faces need the opposite winding.
   bool mirrors() const;
+  /// The most that a length grows: the largest singular value of the linear part.
+  double stretch() const;
 
   Vec3f point(const Vec3f& p) const;
+  /// The same in doubles.
+  Vec3 exact_point(const Vec3& p) const;
   /// Maps a direction along the surface and gives it length 1.
   Vec3f direction(const Vec3f& d) const;
   /// Maps a direction across the surface (by the inverse transpose) and gives it length 1.

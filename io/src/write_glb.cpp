@@ -1,17 +1,21 @@
-#include "glb_builder.h"
-#include "gltf_mesh_writer.h"
+#include <lodestone/io/scene.h>
+
 #include "mesh_writers.h"
+#include "try.h"
 
 namespace lodestone::detail {
 
 Result<std::vector<std::byte>> to_glb(const Mesh& mesh, const std::string& name) {
-  GlbBuilder builder;
-  const MaterialTable materials(builder, {mesh.face_material.begin(), mesh.face_material.end()});
-  Json node = {{"name", name}};
-  if (const auto index = add_plain_mesh(builder, mesh, name, materials)) node["mesh"] = *index;
-  builder.add("nodes", std::move(node));
-  builder.add("scenes", {{"nodes", Json::array({0})}});
-  return builder.finish();
+  LODESTONE_TRY(const Scene scene, Scene::from_mesh({mesh, {}, {}}, name));
+  std::vector<LeveledMesh> levels(scene.meshes().size());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    levels[i].levels.resize(1);
+    levels[i].levels[0].mesh = scene.meshes()[i].mesh;
+  }
+  AssetOptions options;
+  options.draco = false;
+  LODESTONE_TRY(EncodedAsset asset, encode_scene_level(scene, levels, 0, options));
+  return std::move(asset.glb);
 }
 
 }  // namespace lodestone::detail

@@ -1,9 +1,11 @@
-// The glTF readers: the flattened mesh, and the asset with its levels.
+// The glTF readers: the flattened mesh, the asset with its levels, the scene; and the scene's writer.
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <lodestone/io/asset.h>
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
 
 #include "support/fuzz.h"
 #include "support/shapes.h"
@@ -11,12 +13,14 @@
 std::vector<lodestone::test::Bytes> lodestone::test::fuzz_seeds() {
   std::vector<Bytes> seeds;
   for (const bool draco : {false, true}) {
-    std::vector<AssetLevel> levels(2);
-    levels[0].mesh = assemble(seam_cube(2))->mesh;
-    levels[1].mesh = assemble(seam_cube(1))->mesh;
+    LeveledMesh mesh;
+    mesh.levels.resize(2);
+    mesh.levels[0].mesh = assemble(seam_cube(2))->mesh;
+    mesh.levels[1].mesh = assemble(seam_cube(1))->mesh;
+    const auto scene = Scene::from_mesh({mesh.levels[0].mesh, {}, {}}, "cube");
     AssetOptions options;
     options.draco = draco;
-    const auto asset = encode_asset(levels, {}, options);
+    const auto asset = encode_scene(*scene, std::span(&mesh, 1), options);
     if (!asset) continue;
     const auto* first = reinterpret_cast<const std::uint8_t*>(asset->glb.data());
     seeds.emplace_back(first, first + asset->glb.size());
@@ -24,10 +28,38 @@ std::vector<lodestone::test::Bytes> lodestone::test::fuzz_seeds() {
   return seeds;
 }
 
+namespace {
+
+/// Writes a scene again in two levels, the coarser of half the faces: it works, or says why not.
+void encode_again(const lodestone::Result<lodestone::Scene>& scene) {
+  if (!scene) {
+    if (scene.error().message.empty()) std::abort();
+    return;
+  }
+  std::vector<lodestone::LeveledMesh> meshes;
+  for (const lodestone::SceneMesh& mesh : scene->meshes()) {
+    meshes.emplace_back().levels.resize(2);
+    meshes.back().levels[0].mesh = meshes.back().levels[1].mesh = mesh.mesh;
+    lodestone::Mesh& coarse = meshes.back().levels[1].mesh;
+    coarse.corner_wedge.resize(coarse.face_count() / 2 * 3);
+    coarse.face_material.resize(std::min(coarse.face_material.size(), coarse.face_count()));
+  }
+  for (const bool draco : {false, true}) {
+    lodestone::AssetOptions options;
+    options.draco = draco;
+    const auto asset = encode_scene(*scene, meshes, options);
+    if (!asset && asset.error().message.empty()) std::abort();
+  }
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span(data, size));
   const auto file = lodestone::read_mesh_bytes(bytes, "gltf");
   const auto asset = lodestone::read_asset_bytes(bytes);
   if ((!file && file.error().message.empty()) || (!asset && asset.error().message.empty())) std::abort();
+  encode_again(lodestone::Scene::read_bytes(bytes, "gltf"));
+  encode_again(lodestone::Scene::read_multi_lod_bytes(bytes));
   return 0;
 }

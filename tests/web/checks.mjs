@@ -1,9 +1,10 @@
 // What must be true of a multi-LOD .glb in each client. Every check throws with the reason, or returns a line for the log.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 import validator from 'gltf-validator';
 import { withPage } from './browser.mjs';
+import { lodChains, parseGlb, trianglesOfAccessors } from './glb.mjs';
 
 const triangles = (levels) => levels.map((level) => level.triangles);
 
@@ -15,6 +16,39 @@ export async function validates(asset) {
   const text = serious.map(({ code, message, pointer }) => `${code} ${pointer}: ${message}`).join('\n');
   assert.equal(numErrors + numWarnings, 0, text);
   return `${numInfos} infos`;
+}
+
+const severityOfErrors = 0;
+
+/** Returns how often each kind of error occurs in a file, with the files beside it. */
+async function countErrors(path) {
+  const besides = (uri) => readFile(join(dirname(path), decodeURIComponent(uri))).then((bytes) => new Uint8Array(bytes));
+  const report = await validator.validateBytes(new Uint8Array(await readFile(path)),
+    { maxIssues: 0, externalResourceFunction: besides });
+  const counts = new Map();
+  for (const { severity, code, message } of report.issues.messages) {
+    if (severity !== severityOfErrors) continue;
+    counts.set(code, { count: (counts.get(code)?.count ?? 0) + 1, message });
+  }
+  return counts;
+}
+
+/** Khronos' validator finds no error in the output that is not in the input. Warnings may be the input's own. */
+export async function addsNoErrors(input, output) {
+  const before = await countErrors(input);
+  const after = await countErrors(output);
+  for (const [code, { count, message }] of after) {
+    assert.ok(count <= (before.get(code)?.count ?? 0), `${count} × ${code}: ${message}`);
+  }
+  return after.size === 0 ? 'no errors' : `only the input's own: ${[...after.keys()].join(', ')}`;
+}
+
+/** In every chain of levels, the extras' face counts are what the accessors hold. */
+export async function chainsAgree(output) {
+  const gltf = parseGlb(await readFile(output));
+  const chains = lodChains(gltf);
+  for (const node of chains.flat()) assert.equal(gltf.nodes[node].extras.lodestone.faces, trianglesOfAccessors(gltf, node));
+  return `${chains.length} chains of ${chains[0].length} levels`;
 }
 
 /** The extras tell the truth: each level's face count is what its accessors hold. */

@@ -10,16 +10,24 @@ export function parseGlb(bytes) {
   return JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
 }
 
-/** Returns the nodes of each level, finest first: the node that has MSFT_lod, then its ids. */
-export function levelNodes(gltf) {
-  const finest = gltf.nodes.findIndex((node) => node.extensions?.MSFT_lod);
-  if (finest < 0) throw new Error('no node has MSFT_lod');
-  return [finest, ...gltf.nodes[finest].extensions.MSFT_lod.ids];
+/** Returns the nodes of every MSFT_lod, each list finest first: the node that has it, then its ids. */
+export function lodChains(gltf) {
+  const chains = gltf.nodes.flatMap((node, index) =>
+    (node.extensions?.MSFT_lod ? [[index, ...node.extensions.MSFT_lod.ids]] : []));
+  if (chains.length === 0) throw new Error('no node has MSFT_lod');
+  return chains;
 }
 
-function trianglesOfAccessors(gltf, node) {
-  const primitives = gltf.meshes[gltf.nodes[node].mesh].primitives;
-  return primitives.reduce((sum, primitive) => sum + gltf.accessors[primitive.indices].count / 3, 0);
+/** Returns the nodes of each level, finest first, where the file has one mesh: those of the first MSFT_lod. */
+export function levelNodes(gltf) {
+  return lodChains(gltf)[0];
+}
+
+/** Returns the triangles that a node's mesh has by its accessors; points and lines do not count. */
+export function trianglesOfAccessors(gltf, node) {
+  if (gltf.nodes[node].mesh === undefined) return 0;
+  const triangles = gltf.meshes[gltf.nodes[node].mesh].primitives.filter(({ mode = 4 }) => mode === 4);
+  return triangles.reduce((sum, primitive) => sum + gltf.accessors[primitive.indices].count / 3, 0);
 }
 
 /** Returns what the file says of its levels, finest first: node, triangles by its accessors, extras; and if it uses Draco. */

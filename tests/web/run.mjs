@@ -3,9 +3,9 @@
 //   node run.mjs --program PROGRAM [--models FOLDER] --output FOLDER     build assets, then check them
 //   node run.mjs --output FOLDER FILE.glb …                              check files that are there already
 import { execFile } from 'node:child_process';
-import { existsSync } from 'node:fs';
+import { existsSync, readdirSync } from 'node:fs';
 import { mkdir } from 'node:fs/promises';
-import { basename, dirname, join, resolve } from 'node:path';
+import { basename, dirname, extname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs, promisify } from 'node:util';
 import { readLevels } from './glb.mjs';
@@ -46,6 +46,30 @@ async function buildAssets(output) {
   return files;
 }
 
+/** Returns the scenes among the models. */
+function sceneModels() {
+  return ['gltf', 'skin-morph'].map((name) => join(options.models ?? '', name)).filter(existsSync).flatMap((folder) =>
+    readdirSync(folder, { recursive: true }).filter((name) => ['.gltf', '.glb'].includes(extname(name))).sort()
+      .map((name) => join(folder, name)));
+}
+
+/** Builds every scene with and without Draco, and checks each result without any client but the validator. */
+async function checkScenes(checks, output) {
+  const count = { passed: 0, failed: 0 };
+  for (const input of sceneModels()) {
+    for (const flags of [[], ['--no-draco']]) {
+      const file = join(output, `scene-${basename(input, extname(input))}${flags.join('')}.glb`);
+      const build = ['build', input, '-o', file, '--quiet', '--levels', '5', '--ratio', '0.5', ...flags];
+      await report(count, basename(file, '.glb'), {
+        'build': () => promisify(execFile)(options.program, build).then(() => 'done'),
+        'gltf-validator': () => checks.addsNoErrors(input, file),
+        'extras': () => checks.chainsAgree(file),
+      });
+    }
+  }
+  return count;
+}
+
 async function describe(path) {
   const { levels, draco } = await readLevels(path);
   return { path, name: basename(path, '.glb'), url: `/assets/${basename(path)}`, levels, draco };
@@ -63,19 +87,22 @@ function checksOf(checks, site, asset) {
   };
 }
 
-async function runChecks(site, checks, assets) {
-  const count = { passed: 0, failed: 0 };
-  for (const asset of assets) {
-    for (const [name, check] of Object.entries(checksOf(checks, site, asset))) {
-      try {
-        console.log(`ok     ${asset.name}: ${name}: ${await check()}`);
-        ++count.passed;
-      } catch (error) {
-        console.log(`FAILED ${asset.name}: ${name}: ${error.message}`);
-        ++count.failed;
-      }
+/** Runs checks one after the other, prints how each ended and counts them. */
+async function report(count, asset, checks) {
+  for (const [name, check] of Object.entries(checks)) {
+    try {
+      console.log(`ok     ${asset}: ${name}: ${await check()}`);
+      ++count.passed;
+    } catch (error) {
+      console.log(`FAILED ${asset}: ${name}: ${error.message}`);
+      ++count.failed;
     }
   }
+}
+
+async function runChecks(site, checks, assets) {
+  const count = { passed: 0, failed: 0 };
+  for (const asset of assets) await report(count, asset.name, checksOf(checks, site, asset));
   return count;
 }
 
@@ -99,8 +126,9 @@ async function main() {
   const count = await runChecks(site, checks, assets);
   await browser.close();
   await server.close();
-  console.log(`${count.passed} passed, ${count.failed} failed`);
-  process.exitCode = count.failed === 0 ? 0 : 1;
+  const scenes = positionals.length > 0 ? { passed: 0, failed: 0 } : await checkScenes(checks, output);
+  console.log(`${count.passed + scenes.passed} passed, ${count.failed + scenes.failed} failed`);
+  process.exitCode = count.failed + scenes.failed === 0 ? 0 : 1;
 }
 
 await main();

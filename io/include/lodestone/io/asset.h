@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,11 +10,10 @@
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/result.h>
 #include <lodestone/lod/deviation.h>
-#include <lodestone/lod/progressive_mesh.h>
 
 namespace lodestone {
 
-/// One discrete level of an asset, finest first.
+/// One discrete level of a mesh.
 struct AssetLevel {
   Mesh mesh;
   Deviation deviation;         ///< measured against the full mesh
@@ -25,23 +23,24 @@ struct AssetLevel {
 
 struct AssetOptions {
   bool draco = true;
-  int draco_position_bits = 14;  ///< 1 to 30, one grid for all levels and meshes
+  int draco_position_bits = 14;  ///< 1 to 30, one grid for all levels, and all meshes of a scale
   int draco_normal_bits = 10;
   int draco_texcoord_bits = 12;
   int draco_generic_bits = 10;
   int draco_compression_level = 7;  ///< 0 to 10
-  std::string name;                 ///< of the root node and its meshes
 };
 
 /// What was written, for reports.
 struct AssetLayout {
   struct Level {
-    std::uint64_t byte_offset = 0;  ///< in the binary chunk
-    std::uint64_t byte_length = 0;
-    std::uint64_t face_count = 0;    ///< as decoded
-    std::uint64_t vertex_count = 0;  ///< as decoded
+    std::uint64_t byte_offset = 0;     ///< in the binary chunk: of what only this level and finer ones need
+    std::uint64_t byte_length = 0;     ///< of the same
+    std::uint64_t geometry_bytes = 0;  ///< of all its geometry, that it shares with other levels included
+    std::uint64_t face_count = 0;      ///< as decoded, all instances counted
+    std::uint64_t vertex_count = 0;    ///< as decoded, all instances counted
   };
   std::vector<Level> levels;
+  double quantisation_error = 0;  ///< the farthest Draco moves a vertex, world units; 0 without Draco
   std::uint64_t stream_bytes = 0;
   std::uint64_t total_bytes = 0;
 };
@@ -51,37 +50,36 @@ struct EncodedAsset {
   AssetLayout layout;
 };
 
-/// Encodes a multi-LOD .glb: MSFT_lod levels, their numbers in extras, Draco or plain geometry, and the removal stream
-/// (if any) as the optional extension LODESTONE_removal_stream. The binary chunk holds the coarsest level first and the
-/// stream last. Deterministic. Errors: InvalidArgument, Unsupported.
-Result<EncodedAsset> encode_asset(std::span<const AssetLevel> levels, std::span<const std::byte> stream,
-                                  const AssetOptions& options);
+/// Returns the share of the screen's area below which something of a diagonal is well shown by a level that deviates so
+/// much: the deviation is then at most one pixel of a screen of 1920 × 1080. At most 1.
+double screen_coverage(double diagonal, double deviation);
 
-/// A multi-LOD file as read back.
+/// A multi-LOD file as read back, its scene flattened into world space.
 struct Asset {
   struct Level {
-    Mesh mesh;  ///< decoded from Draco or plain accessors
-    std::uint64_t byte_length = 0;
-    double maximum_deviation = 0;  ///< from extras, mesh units; 0 where absent
-    double mean_deviation = 0;
-    double rms_deviation = 0;
-    double curvature_error = 0;
-    double screen_coverage = 0;
+    Mesh mesh;                      ///< decoded from Draco or plain accessors
+    std::uint64_t byte_length = 0;  ///< of its geometry, each mesh once
+    double maximum_deviation = 0;   ///< from extras, world units: the largest of all meshes; 0 where absent
+    double mean_deviation = 0;      ///< weighted by the area that each mesh covers in the world
+    double rms_deviation = 0;       ///< weighted alike
+    double curvature_error = 0;     ///< the largest
+    double screen_coverage = 0;     ///< the largest
     bool draco = false;
   };
-  std::vector<Level> levels;      ///< finest first; one for an ordinary glTF
-  std::vector<std::byte> stream;  ///< empty where the file has none
+  struct Stream {
+    std::string mesh;  ///< the name of its mesh
+    std::vector<std::byte> bytes;
+  };
+  std::vector<Level> levels;    ///< finest first; one for an ordinary glTF
+  std::vector<Stream> streams;  ///< in the order of the meshes; empty where the file has none
   std::uint64_t total_bytes = 0;
 };
 
-/// Reads the levels and the stream of a .glb that `encode_asset` wrote.
+/// Reads the levels and the streams of a .glb that `encode_scene` wrote.
 /// Errors: Unreadable, Malformed, LimitExceeded, Unsupported.
 Result<Asset> read_asset(const std::filesystem::path& path);
 
 /// Reads the same from memory. Errors: Malformed, LimitExceeded, Unsupported.
 Result<Asset> read_asset_bytes(std::span<const std::byte> bytes);
-
-/// Reads only the removal stream of a .glb. Errors: as above; Unsupported where the file has none.
-Result<std::vector<std::byte>> read_asset_stream(const std::filesystem::path& path);
 
 }  // namespace lodestone

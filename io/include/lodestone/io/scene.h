@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/assemble.h>
+#include <lodestone/core/mesh.h>
+#include <lodestone/core/result.h>
+#include <lodestone/io/asset.h>
+#include <lodestone/io/read_mesh.h>
+
+namespace lodestone {
+
+/// One mesh of a scene: the triangles of all its primitives, joined.
+///
+/// The attributes are those of all primitives, zero where a primitive lacks one; an attribute that primitives have in
+/// different types stands there once for each type. Morph targets travel as attributes "TARGET_<i>:<SEMANTIC>", floats.
+struct SceneMesh {
+  std::string name;                    ///< may be empty
+  Mesh mesh;                           ///< face_material: the number of the primitive in the document's mesh
+  AssemblyReport assembly;             ///< what became of the triangles in the file
+  double scale = 1;                    ///< the largest stretch of any instance: world units per mesh unit
+  double area = 0;                     ///< of all its instances together, squared world units
+  std::size_t instance_count = 0;      ///< how often the scene shows it
+  bool skinned = false;                ///< by any of its nodes
+  bool has_targets = false;            ///< morph targets
+  std::vector<std::string> nodes;      ///< the names of the nodes that show it
+  std::vector<std::string> materials;  ///< by number of the primitive: its material's name
+  std::vector<std::byte> stream;       ///< its removal stream; only of a scene read with `read_multi_lod`
+};
+
+/// A glTF document with all it holds, and the meshes of it that levels can be made of: those that have triangles and
+/// that a node of a scene shows.
+class Scene {
+ public:
+  /// Reads a scene from glTF or GLB with its buffers and images; any other format as `from_mesh` says.
+  /// Errors: Unreadable, Malformed, LimitExceeded; Unsupported, also where the file has levels of detail already.
+  static Result<Scene> read(const std::filesystem::path& path);
+  /// Reads the same from memory; `extension` as for `read_mesh_bytes`. Files beside it are out of reach.
+  static Result<Scene> read_bytes(std::span<const std::byte> bytes, const std::string& extension);
+  /// Reads a multi-LOD .glb as the scene it was made of, its finest levels as the meshes, with their streams.
+  /// Errors: as `read`; Unsupported where another program made the levels.
+  static Result<Scene> read_multi_lod(const std::filesystem::path& path);
+  /// The same from memory.
+  static Result<Scene> read_multi_lod_bytes(std::span<const std::byte> bytes);
+  /// Makes a scene of one node and its mesh, with a plain material for each number that faces use; 0 stands for none.
+  static Result<Scene> from_mesh(MeshFile file, const std::string& name);
+
+  /// The meshes to make levels of, in the document's order.
+  const std::vector<SceneMesh>& meshes() const;
+  /// What is left out of the scene or changed in it, one sentence each.
+  const std::vector<std::string>& notes() const;
+  /// The box of all instances in the world, skinned ones posed at rest; of size 0 where there are none.
+  const Box& box() const;
+
+  struct Impl;  ///< opaque
+  explicit Scene(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::shared_ptr<const Impl> impl_;
+};
+
+/// The levels of one mesh of a scene.
+struct LeveledMesh {
+  /// Finest first, as many as every mesh of the scene has. Attributes and face_material as in SceneMesh; a level equal
+  /// to the one before is stored once.
+  std::vector<AssetLevel> levels;
+  std::vector<std::byte> stream;  ///< the removal stream; empty for none
+};
+
+/// Encodes a scene as a multi-LOD .glb: everything in the document as it was, and levels by MSFT_lod below each node
+/// that shows one of the meshes. The binary chunk holds the coarsest levels, what the document keeps, the finer levels
+/// one after the other, and the streams (extension LODESTONE_removal_stream) last. Deterministic.
+/// Pre: one entry for each of the scene's meshes. Errors: InvalidArgument, Malformed, LimitExceeded, Unsupported.
+Result<EncodedAsset> encode_scene(const Scene& scene, std::span<const LeveledMesh> meshes, const AssetOptions& options);
+
+/// Encodes a scene as a .glb that has only one of the levels, with neither MSFT_lod nor streams. Errors: as above.
+Result<EncodedAsset> encode_scene_level(const Scene& scene, std::span<const LeveledMesh> meshes, std::size_t level,
+                                        const AssetOptions& options);
+
+}  // namespace lodestone

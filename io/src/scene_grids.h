@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <lodestone/io/scene.h>
+
+#include "draco_encode.h"
+#include "scene_primitives.h"
+
+namespace lodestone::detail {
+
+/// Fits the grids of each of a scene's meshes, over all its levels: levels of different grids would not fit together.
+/// Meshes of equal scale share their grid of positions, since they may touch. Attribute grids stand by column.
+/// Shapes: `levels[mesh][level]`.
+std::vector<QuantizationGrids> fit_grids(const Scene& scene, std::span<const std::vector<LevelGeometry>> levels,
+                                         const AssetOptions& options);
+
+}  // namespace lodestone::detail

@@ -1,0 +1,74 @@
+#include "scene_images.h"
+
+#include <array>
+#include <string_view>
+
+#include "gltf_container.h"
+#include "text.h"
+#include "try.h"
+
+namespace lodestone::detail {
+namespace {
+
+using namespace std::string_view_literals;
+
+struct ImageType {
+  std::string_view magic;
+  std::size_t at;
+  const char* mime_type;
+};
+
+constexpr std::array<ImageType, 5> kImageTypes = {{{"\x89PNG\r\n\x1a\n"sv, 0, "image/png"},
+                                                   {"\xff\xd8\xff"sv, 0, "image/jpeg"},
+                                                   {"WEBP"sv, 8, "image/webp"},
+                                                   {"\xabKTX 20\xbb\r\n\x1a\n"sv, 0, "image/ktx2"},
+                                                   {"sB"sv, 0, "image/x-basis"}}};
+
+/// Goes by the content, since extensions and declared types are often wrong; else by what the document declares.
+std::string mime_type_of(std::span<const std::byte> bytes, const std::string& declared) {
+  const std::string_view start = as_text(bytes).substr(0, 16);
+  for (const ImageType& type : kImageTypes)
+    if (start.size() >= type.at && start.substr(type.at).starts_with(type.magic)) return type.mime_type;
+  return declared;
+}
+
+Result<EmbeddedImage> fetch_image(const Json& image, const std::string& uri, const FileFetcher& fetch) {
+  EmbeddedImage embedded;
+  if (uri.starts_with("data:")) {
+    LODESTONE_TRY(embedded.bytes, decode_data_uri(uri, "image"));
+  } else {
+    LODESTONE_TRY(const std::filesystem::path path, uri_to_path(uri, "image"));
+    LODESTONE_TRY(embedded.bytes, fetch(path));
+  }
+  std::string declared = string_member(image, "mimeType");
+  if (declared.empty() && uri.starts_with("data:")) declared = uri.substr(5, uri.find_first_of(";,") - 5);
+  embedded.mime_type = mime_type_of(embedded.bytes, declared);
+  if (embedded.bytes.empty() || embedded.mime_type.empty())
+    return fail(ErrorCode::Unsupported, "no known format of images");
+  return embedded;
+}
+
+std::string shortened(const std::string& uri) { return uri.size() <= 60 ? uri : uri.substr(0, 57) + "..."; }
+
+}  // namespace
+
+std::vector<EmbeddedImage> fetch_images(const GltfDocument& document, const FileFetcher& fetch,
+                                        std::vector<std::string>& notes) {
+  std::vector<EmbeddedImage> images;
+  for (std::size_t i = 0; i < document.count("images"); ++i) {
+    const Json& image = document.json()["images"][i];
+    const std::string uri = string_member(image, "uri");
+    if (uri.empty()) continue;
+    auto embedded = fetch_image(image, uri, fetch);
+    if (!embedded) {
+      notes.push_back(
+          text("image ", i, " stays outside the file, at '", shortened(uri), "': ", embedded.error().message));
+      continue;
+    }
+    embedded->image = i;
+    images.push_back(std::move(*embedded));
+  }
+  return images;
+}
+
+}  // namespace lodestone::detail

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include <lodestone/io/scene.h>
+
+#include "json.h"
+#include "scene_primitives.h"
+
+namespace lodestone::detail {
+
+/// True if two levels have the same faces, attributes and all, in the same order.
+bool same_mesh(const Mesh& a, const Mesh& b);
+
+/// Returns a level's numbers for its node's extras; `position_step` only with Draco.
+Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const SceneMesh& mesh, std::size_t node_count,
+                   std::optional<double> position_step);
+
+/// Returns MSFT_screencoverage: the share of the screen's area below which the next level is good enough.
+Json coverage_of_levels(std::span<const AssetLevel> levels);
+
+}  // namespace lodestone::detail

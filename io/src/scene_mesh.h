@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <lodestone/core/result.h>
+
+#include "scene_impl.h"
+
+namespace lodestone::detail {
+
+/// A mesh of the document with its primitives joined, and which of them can be told apart again.
+struct JoinedMesh {
+  SceneMesh mesh;
+  MeshSource source;
+};
+
+/// Joins the triangles of a mesh's primitives; nothing for a mesh without any that `assemble` keeps.
+/// Errors: Malformed, Unsupported; LimitExceeded where the attributes of all primitives together are out of proportion.
+Result<std::optional<JoinedMesh>> join_primitives(const GltfDocument& document, std::size_t mesh);
+
+/// Describes a mesh that is no document's: every primitive has all attributes that glTF has a place for.
+MeshSource source_of(const Mesh& mesh, std::size_t primitive_count);
+
+}  // namespace lodestone::detail

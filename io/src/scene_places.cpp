@@ -1,0 +1,213 @@
+#include "scene_places.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bytes.h"
+#include "gltf_scene.h"
+#include "text.h"
+#include "transform.h"
+#include "try.h"
+
+namespace lodestone::detail {
+namespace {
+
+// Nodes may show one mesh any number of times, so that the work is not bounded by the file's size.
+constexpr std::size_t kMaxPlacedPoints = 300'000'000;
+
+constexpr std::size_t kMatrixComponents = 16, kJointsPerSet = 4;
+
+Result<std::vector<Transform>> read_inverse_binds(const GltfDocument& document, const Json& skin, std::size_t count,
+                                                  const std::string& where) {
+  std::vector<Transform> matrices(count);
+  if (find_member(skin, "inverseBindMatrices") == nullptr) return matrices;
+  LODESTONE_TRY(const std::size_t index, size_member(skin, "inverseBindMatrices", where));
+  LODESTONE_TRY(const AccessorData data, document.accessor(index));
+  if (data.component_count != kMatrixComponents || data.count < count)
+    return fail(ErrorCode::Malformed, text(where, ": inverseBindMatrices are not ", count, " matrices"));
+  const std::vector<float> values = to_floats(data);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 4; ++column)
+        matrices[i].rows[row][column] = values[kMatrixComponents * i + 4 * column + row];
+  return matrices;
+}
+
+/// Returns, for each joint, the map from the mesh's units to the world in the pose the nodes have.
+Result<std::vector<Transform>> read_joints(const GltfDocument& document, std::span<const NodePlace> places,
+                                           std::size_t index) {
+  const std::string where = text("skin ", index);
+  LODESTONE_TRY(const Json* const skin, document.element("skins", "skin", index));
+  LODESTONE_TRY(const auto joints, size_array_member(*skin, "joints", where));
+  LODESTONE_TRY(std::vector<Transform> matrices, read_inverse_binds(document, *skin, joints.size(), where));
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i] >= places.size())
+      return fail(ErrorCode::Malformed,
+                  text(where, ": node ", joints[i], " does not exist: the file has ", places.size()));
+    matrices[i] = places[joints[i]].world * matrices[i];
+  }
+  return matrices;
+}
+
+/// Reads one attribute of EXT_mesh_gpu_instancing; empty where it is absent.
+Result<std::vector<float>> read_instancing(const GltfDocument& document, const Json& attributes, const char* name,
+                                           std::uint8_t components, const std::string& where) {
+  if (find_member(attributes, name) == nullptr) return std::vector<float>{};
+  LODESTONE_TRY(const std::size_t index, size_member(attributes, name, where));
+  LODESTONE_TRY(const AccessorData data, document.accessor(index));
+  if (data.component_count != components)
+    return fail(ErrorCode::Malformed, text(where, ": ", name, " has ", int{data.component_count}, " components"));
+  return to_floats(data);
+}
+
+/// Returns where the node shows its mesh, relative to itself: once, but for EXT_mesh_gpu_instancing.
+Result<std::vector<Transform>> read_copies(const GltfDocument& document, const Json& node, const std::string& where) {
+  const Json* extension = GltfDocument::extension(node, "EXT_mesh_gpu_instancing");
+  const Json* attributes = extension != nullptr ? find_member(*extension, "attributes") : nullptr;
+  if (attributes == nullptr) return std::vector<Transform>(1);
+  LODESTONE_TRY(const auto moves, read_instancing(document, *attributes, "TRANSLATION", 3, where));
+  LODESTONE_TRY(const auto turns, read_instancing(document, *attributes, "ROTATION", 4, where));
+  LODESTONE_TRY(const auto scales, read_instancing(document, *attributes, "SCALE", 3, where));
+  const std::size_t count = std::max({moves.size() / 3, turns.size() / 4, scales.size() / 3});
+  std::vector<Transform> copies(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = [i](const std::vector<float>& values, std::size_t size, std::size_t k, double other) {
+      return size * i + k < values.size() ? values[size * i + k] : other;
+    };
+    copies[i] = from_trs({at(moves, 3, 0, 0), at(moves, 3, 1, 0), at(moves, 3, 2, 0)},
+                         {at(turns, 4, 0, 0), at(turns, 4, 1, 0), at(turns, 4, 2, 0), at(turns, 4, 3, 1)},
+                         {at(scales, 3, 0, 1), at(scales, 3, 1, 1), at(scales, 3, 2, 1)});
+  }
+  return copies;
+}
+
+std::vector<float> floats_of(const Attribute& a) {
+  return to_floats({a.type, a.component_count, a.normalized, a.data.size() / a.element_bytes(), a.data});
+}
+
+/// Poses points by the joints and weights of all sets that there are.
+class Skinner {
+ public:
+  explicit Skinner(const Mesh& mesh) {
+    for (const Attribute& joints : mesh.attributes) {
+      const bool unsigned_type = joints.type == ComponentType::UInt8 || joints.type == ComponentType::UInt16;
+      if (!joints.name.starts_with("JOINTS_") || joints.component_count != kJointsPerSet || !unsigned_type) continue;
+      const std::string partner = "WEIGHTS_" + joints.name.substr(7);
+      for (const Attribute& weights : mesh.attributes)
+        if (weights.name == partner && weights.component_count == kJointsPerSet)
+          sets_.push_back({floats_of(joints), floats_of(weights)});
+    }
+  }
+
+  bool empty() const { return sets_.empty(); }
+
+  /// Joints that do not exist have no say.
+  Vec3 pose(std::size_t wedge, const Vec3& p, std::span<const Transform> joints) const {
+    Vec3 sum;
+    for (const Set& set : sets_)
+      for (std::size_t k = kJointsPerSet * wedge; k < kJointsPerSet * (wedge + 1); ++k) {
+        const auto joint = static_cast<std::size_t>(set.joints[k]);
+        if (set.weights[k] != 0 && joint < joints.size()) sum += joints[joint].exact_point(p) * double{set.weights[k]};
+      }
+    return sum;
+  }
+
+ private:
+  struct Set {
+    std::vector<float> joints, weights;
+  };
+  std::vector<Set> sets_;
+};
+
+void grow(Box& box, const Vec3& p) {
+  box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+  box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+}
+
+double area_of(const Mesh& mesh, std::span<const Vec3> points) {
+  double area = 0;
+  for (std::size_t i = 0; i < mesh.corner_wedge.size(); i += 3) {
+    const Vec3& a = points[mesh.corner_wedge[i]];
+    area += length(cross(points[mesh.corner_wedge[i + 1]] - a, points[mesh.corner_wedge[i + 2]] - a)) / 2;
+  }
+  return area;
+}
+
+/// Measures the instances of one mesh after the other.
+class InstanceMeasure {
+ public:
+  InstanceMeasure(Scene::Impl& scene, std::span<const NodePlace> places) : scene_(scene), places_(places) {}
+
+  Result<void> add_mesh(std::size_t number) {
+    SceneMesh& mesh = scene_.meshes[number];
+    mesh.scale = 0;
+    const Skinner skinner(mesh.mesh);
+    for (const std::size_t node : scene_.sources[number].nodes) LODESTONE_CHECK(add_node(mesh, skinner, node));
+    // What is drawn as a point everywhere has no size in the world, but errors must not vanish by it.
+    if (!(mesh.scale > 0) || !std::isfinite(mesh.scale)) mesh.scale = 1;
+    return {};
+  }
+
+  Box box() const { return box_.low.x <= box_.high.x ? box_ : Box{}; }
+
+ private:
+  Result<void> add_node(SceneMesh& mesh, const Skinner& skinner, std::size_t index) {
+    const std::string where = text("node ", index);
+    LODESTONE_TRY(const Json* const node, scene_.document.element("nodes", "node", index));
+    mesh.nodes.push_back(string_member(*node, "name"));
+    if (find_member(*node, "skin") != nullptr) {
+      LODESTONE_TRY(const std::size_t skin, size_member(*node, "skin", where));
+      LODESTONE_TRY(const auto joints, read_joints(scene_.document, places_, skin));
+      return add_skinned(mesh, skinner, joints);
+    }
+    LODESTONE_TRY(const auto copies, read_copies(scene_.document, *node, where));
+    for (const Transform& copy : copies) {
+      const Transform world = places_[index].world * copy;
+      mesh.scale = std::max(mesh.scale, world.stretch());
+      LODESTONE_CHECK(add_points(mesh, [&](std::size_t, const Vec3& p) { return world.exact_point(p); }));
+    }
+    return {};
+  }
+
+  Result<void> add_skinned(SceneMesh& mesh, const Skinner& skinner, std::span<const Transform> joints) {
+    mesh.skinned = true;
+    for (const Transform& joint : joints) mesh.scale = std::max(mesh.scale, joint.stretch());
+    return add_points(
+        mesh, [&](std::size_t wedge, const Vec3& p) { return skinner.empty() ? p : skinner.pose(wedge, p, joints); });
+  }
+
+  template <class Place>
+  Result<void> add_points(SceneMesh& mesh, const Place& place) {
+    ++mesh.instance_count;
+    placed_ += mesh.mesh.wedge_count();
+    if (placed_ > kMaxPlacedPoints)
+      return fail(ErrorCode::LimitExceeded, text("gltf: the scene has more than ", kMaxPlacedPoints, " points"));
+    points_.clear();
+    for (std::size_t wedge = 0; wedge < mesh.mesh.wedge_count(); ++wedge) {
+      points_.push_back(place(wedge, Vec3(mesh.mesh.positions[mesh.mesh.wedge_vertex[wedge]])));
+      grow(box_, points_.back());
+    }
+    mesh.area += area_of(mesh.mesh, points_);
+    return {};
+  }
+
+  Scene::Impl& scene_;
+  std::span<const NodePlace> places_;
+  std::vector<Vec3> points_;
+  std::size_t placed_ = 0;
+  Box box_{Vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL), Vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
+};
+
+}  // namespace
+
+Result<void> measure_instances(Scene::Impl& scene) {
+  LODESTONE_TRY(const std::vector<NodePlace> places, place_nodes(scene.document));
+  InstanceMeasure measure(scene, places);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) LODESTONE_CHECK(measure.add_mesh(i));
+  scene.box = measure.box();
+  return {};
+}
+
+}  // namespace lodestone::detail

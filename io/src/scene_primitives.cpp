@@ -1,0 +1,240 @@
+#include "scene_primitives.h"
+
+#include <algorithm>
+#include <map>
+
+#include "draco_decode.h"
+#include "gltf_attribute.h"
+#include "gltf_mesh_writer.h"
+#include "scene_buffers.h"
+#include "text.h"
+#include "try.h"
+
+namespace lodestone::detail {
+namespace {
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
+/// What replaces the geometry of one primitive.
+struct PrimitiveGeometry {
+  Json attributes = Json::object();
+  std::size_t indices = 0;
+  Json targets;  ///< null for none
+  Json draco;    ///< the extension's object; null for none
+};
+
+/// Adds the accessors of a level's primitives, one primitive or one level at a time.
+class GeometryWriter {
+ public:
+  GeometryWriter(GlbBuilder& builder, const MeshSource& source, const LevelGeometry& level,
+                 const QuantizationGrids& grids, const AssetOptions& options, WrittenLevel& written)
+      : builder_(builder), source_(source), level_(level), grids_(grids), options_(options), written_(written) {}
+
+  Result<std::map<Index, PrimitiveGeometry>> write() {
+    const std::vector<FacesOfMaterial> groups = split_by_material(*level_.mesh);
+    std::map<Index, PrimitiveGeometry> geometry;
+    if (!options_.draco && share_vertices(groups)) return write_shared();
+    for (const FacesOfMaterial& group : groups) {
+      const SourcePrimitive& primitive = source_.primitives[group.material];
+      if (options_.draco) {
+        LODESTONE_TRY(geometry[group.material], write_draco(primitive, group));
+      } else {
+        geometry[group.material] = write_plain(primitive, group);
+      }
+    }
+    return geometry;
+  }
+
+ private:
+  std::vector<const Attribute*> pick(const SourcePrimitive& primitive) const {
+    std::vector<const Attribute*> picked;
+    for (const std::size_t column : primitive.columns) picked.push_back(level_.columns[column]);
+    return picked;
+  }
+
+  bool share_vertices(std::span<const FacesOfMaterial> groups) const {
+    return std::all_of(groups.begin(), groups.end(), [&](const FacesOfMaterial& group) {
+      const SourcePrimitive& first = source_.primitives[groups[0].material];
+      const SourcePrimitive& other = source_.primitives[group.material];
+      return other.columns == first.columns && other.target_count == first.target_count;
+    });
+  }
+
+  std::map<Index, PrimitiveGeometry> write_shared() {
+    std::map<Index, PrimitiveGeometry> geometry;
+    if (level_.mesh->face_count() == 0) return geometry;
+    const SourcePrimitive& primitive = source_.primitives[level_.mesh->material_of(0)];
+    const Mesh ordered = in_hardware_order(with_attributes(*level_.mesh, pick(primitive)));
+    count(ordered.face_count(), ordered.wedge_count());
+    const PrimitiveGeometry shared = write_vertices(primitive, ordered);
+    for (const FacesOfMaterial& group : split_by_material(ordered)) {
+      geometry[group.material] = shared;
+      geometry[group.material].indices = add_indices(builder_, group.corner_wedge, ordered.wedge_count());
+    }
+    return geometry;
+  }
+
+  PrimitiveGeometry write_plain(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
+    const Mesh mesh = in_hardware_order(submesh(*level_.mesh, group.corner_wedge, pick(primitive)));
+    count(mesh.face_count(), mesh.wedge_count());
+    PrimitiveGeometry geometry = write_vertices(primitive, mesh);
+    geometry.indices = add_indices(builder_, mesh.corner_wedge, mesh.wedge_count());
+    return geometry;
+  }
+
+  /// Writes all but the indices. Pre: the mesh has the primitive's columns, in their order.
+  PrimitiveGeometry write_vertices(const SourcePrimitive& primitive, const Mesh& mesh) {
+    PrimitiveGeometry geometry;
+    geometry.attributes["POSITION"] = add_positions(builder_, mesh);
+    for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
+      const MeshColumn& column = source_.columns[primitive.columns[i]];
+      if (column.target) continue;
+      if (column.needs_quantization) builder_.require_extension("KHR_mesh_quantization");
+      geometry.attributes[column.semantic] = add_attribute(builder_, mesh.attributes[i]);
+    }
+    geometry.targets = write_targets(primitive, mesh);
+    return geometry;
+  }
+
+  /// Morph targets are plain accessors, with Draco too.
+  Json write_targets(const SourcePrimitive& primitive, const Mesh& mesh) {
+    if (primitive.target_count == 0) return nullptr;
+    Json targets = Json::array();
+    targets.get_ref<Json::array_t&>().resize(primitive.target_count, Json::object());
+    for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
+      const MeshColumn& column = source_.columns[primitive.columns[i]];
+      if (!column.target) continue;
+      const std::size_t accessor = add_attribute(builder_, mesh.attributes[i]);
+      if (column.semantic == "POSITION") set_bounds(builder_.at("accessors", accessor), mesh.attributes[i].data);
+      targets[*column.target][column.semantic] = accessor;
+    }
+    return targets;
+  }
+
+  /// Accessors describe what the encoded bytes decode to, which Draco decides: it may split points, and it moves them.
+  Result<PrimitiveGeometry> write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
+    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, pick(primitive));
+    Mesh compressed = mesh;
+    compressed.attributes.clear();
+    QuantizationGrids grids{grids_.position, {}};
+    std::vector<DracoRequest> requests{{0, ComponentType::Float32, 3, false}};
+    for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
+      if (source_.columns[primitive.columns[i]].target) continue;
+      const Attribute& a = mesh.attributes[i];
+      compressed.attributes.push_back(a);
+      grids.attributes.push_back(grids_.attributes[primitive.columns[i]]);
+      requests.push_back({0, a.type, a.component_count, a.normalized});
+    }
+    if (!can_encode_draco(compressed, grids)) return write_plain(primitive, group);
+    const auto method = primitive.target_count > 0 ? DracoMethod::Sequential : DracoMethod::Edgebreaker;
+    LODESTONE_TRY(const DracoPrimitive encoded,
+                  encode_draco(compressed, grids, method, options_.draco_compression_level));
+    requests[0].unique_id = encoded.position_id;
+    for (std::size_t i = 1; i < requests.size(); ++i) requests[i].unique_id = encoded.attribute_ids[i - 1];
+    LODESTONE_TRY(const DracoGeometry decoded, decode_draco(encoded.bytes, requests, "encoded level"));
+    // Targets must be in the order of the decoded points. A decoder that reorders them leaves only the plain form.
+    if (primitive.target_count > 0 && decoded.indices != mesh.corner_wedge) return write_plain(primitive, group);
+    PrimitiveGeometry geometry = describe_draco(primitive, encoded, decoded);
+    geometry.targets = write_targets(primitive, mesh);
+    return geometry;
+  }
+
+  PrimitiveGeometry describe_draco(const SourcePrimitive& primitive, const DracoPrimitive& encoded,
+                                   const DracoGeometry& decoded) {
+    builder_.require_extension(kDraco);
+    count(decoded.indices.size() / 3, decoded.point_count);
+    PrimitiveGeometry geometry;
+    geometry.attributes["POSITION"] = builder_.add("accessors", position_accessor(decoded.attributes[0]));
+    Json ids = {{"POSITION", encoded.position_id}};
+    std::size_t next = 0;
+    for (const std::size_t number : primitive.columns) {
+      const MeshColumn& column = source_.columns[number];
+      if (column.target) continue;
+      if (column.needs_quantization) builder_.require_extension("KHR_mesh_quantization");
+      ids[column.semantic] = encoded.attribute_ids[next];
+      geometry.attributes[column.semantic] = builder_.add("accessors", attribute_accessor(decoded.attributes[++next]));
+    }
+    const auto index_type = decoded.point_count <= 0xffff ? ComponentType::UInt16 : ComponentType::UInt32;
+    geometry.indices =
+        builder_.add("accessors", attribute_accessor({index_type, 1, false, decoded.indices.size(), {}}));
+    geometry.draco = {{"bufferView", builder_.add_view(encoded.bytes)}, {"attributes", std::move(ids)}};
+    return geometry;
+  }
+
+  void count(std::size_t faces, std::size_t vertices) {
+    written_.face_count += faces;
+    written_.vertex_count += vertices;
+  }
+
+  GlbBuilder& builder_;
+  const MeshSource& source_;
+  const LevelGeometry& level_;
+  const QuantizationGrids& grids_;
+  const AssetOptions& options_;
+  WrittenLevel& written_;
+};
+
+/// Keeps all of a primitive but its geometry.
+Json replace_geometry(const Json& source, const PrimitiveGeometry& geometry) {
+  Json primitive = source;
+  for (const char* key : {"mode", "targets"}) primitive.erase(key);
+  erase_extension(primitive, kDraco);
+  primitive["attributes"] = geometry.attributes;
+  primitive["indices"] = geometry.indices;
+  if (!geometry.targets.is_null()) primitive["targets"] = geometry.targets;
+  if (geometry.draco.is_null()) return primitive;
+  if (!primitive.contains("extensions") || !primitive["extensions"].is_object())
+    primitive["extensions"] = Json::object();
+  primitive["extensions"][kDraco] = geometry.draco;
+  return primitive;
+}
+
+bool belongs_to(const Attribute& a, const MeshColumn& column) {
+  const Attribute& b = column.layout;
+  const bool integers = a.type != ComponentType::Float32;
+  if (a.type != b.type || a.component_count != b.component_count || (integers && a.normalized != b.normalized))
+    return false;
+  if (a.name == b.name) return true;
+  // A level out of a stream has the name from before the file was written.
+  const auto semantic = gltf_semantic(a);
+  return !column.target && semantic && semantic->name == column.semantic;
+}
+
+}  // namespace
+
+Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source) {
+  LevelGeometry level{&mesh, {}};
+  for (const MeshColumn& column : source.columns) {
+    const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
+                                    [&](const Attribute& a) { return belongs_to(a, column); });
+    if (found == mesh.attributes.end())
+      return fail(ErrorCode::InvalidArgument,
+                  text("mesh ", source.mesh, ": a level lacks the attribute ", column.layout.name));
+    level.columns.push_back(&*found);
+  }
+  for (Index face = 0; face < mesh.face_count(); ++face)
+    if (mesh.material_of(face) >= source.primitives.size() || !source.primitives[mesh.material_of(face)].replaced)
+      return fail(ErrorCode::InvalidArgument, text("mesh ", source.mesh, ": a level has faces of primitive ",
+                                                   mesh.material_of(face), ", which is none of triangles"));
+  return level;
+}
+
+Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, const MeshSource& source,
+                                 const LevelGeometry& level, const QuantizationGrids& grids,
+                                 const AssetOptions& options) {
+  WrittenLevel written;
+  const std::uint64_t begin = (builder.binary_bytes() + 3) / 4 * 4;
+  LODESTONE_TRY(const auto geometry, GeometryWriter(builder, source, level, grids, options, written).write());
+  written.byte_count = std::max(begin, builder.binary_bytes()) - begin;
+  const Json& primitives = source_mesh.at("primitives");
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const auto replacement = geometry.find(static_cast<Index>(i));
+    if (!source.primitives[i].replaced)
+      written.primitives.push_back(primitives[i]);
+    else if (replacement != geometry.end())
+      written.primitives.push_back(replace_geometry(primitives[i], replacement->second));
+  }
+  return written;
+}
+
+}  // namespace lodestone::detail

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+#include <lodestone/core/result.h>
+#include <lodestone/io/asset.h>
+
+#include "draco_encode.h"
+#include "glb_builder.h"
+#include "scene_impl.h"
+
+namespace lodestone::detail {
+
+/// A level of a mesh, with the attributes its primitives are made of.
+struct LevelGeometry {
+  const Mesh* mesh = nullptr;
+  std::vector<const Attribute*> columns;  ///< one for each of the source's columns
+};
+
+/// Finds the source's columns in a level. Errors: InvalidArgument where one is missing or the materials are no
+/// primitives of the source.
+Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source);
+
+/// The primitives of a level in the document, and what a client will get out of them.
+struct WrittenLevel {
+  Json primitives = Json::array();  ///< kept ones included; empty for a level that shows nothing
+  std::uint64_t face_count = 0;
+  std::uint64_t vertex_count = 0;
+  std::uint64_t byte_count = 0;  ///< of its geometry
+};
+
+/// Writes a level's geometry and describes it by `source_mesh`, the mesh's object in the document: primitives keep
+/// their material, extensions and extras, those that are not replaced all they have.
+Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, const MeshSource& source,
+                                 const LevelGeometry& level, const QuantizationGrids& grids,
+                                 const AssetOptions& options);
+
+}  // namespace lodestone::detail

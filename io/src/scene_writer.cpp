@@ -1,0 +1,282 @@
+// A .glb of a whole scene: the document as it was, its meshes replaced by levels that MSFT_lod ties together below the
+// nodes that show them, geometry plain or Draco, the removal streams last.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <lodestone/io/scene.h>
+
+#include "glb_builder.h"
+#include "scene_buffers.h"
+#include "scene_extensions.h"
+#include "scene_grids.h"
+#include "scene_impl.h"
+#include "scene_levels.h"
+#include "scene_nodes.h"
+#include "scene_primitives.h"
+#include "stream_extension.h"
+#include "text.h"
+#include "try.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+constexpr int kMaxQuantizationBits = 30;  // Draco's limit
+constexpr int kMinNormalBits = 2;
+
+struct BitsOption {
+  const char* name;
+  int value;
+  int least;
+};
+
+Result<void> check_options(const AssetOptions& options) {
+  if (!options.draco) return {};
+  for (const BitsOption& bits : {BitsOption{"draco_position_bits", options.draco_position_bits, 1},
+                                 BitsOption{"draco_normal_bits", options.draco_normal_bits, kMinNormalBits},
+                                 BitsOption{"draco_texcoord_bits", options.draco_texcoord_bits, 1},
+                                 BitsOption{"draco_generic_bits", options.draco_generic_bits, 1}})
+    if (bits.value < bits.least || bits.value > kMaxQuantizationBits)
+      return fail(ErrorCode::InvalidArgument,
+                  text(bits.name, " is ", bits.value, ", not in ", bits.least, " to ", kMaxQuantizationBits));
+  if (options.draco_compression_level < 0 || options.draco_compression_level > 10)
+    return fail(ErrorCode::InvalidArgument,
+                text("draco_compression_level is ", options.draco_compression_level, ", not in 0 to 10"));
+  return {};
+}
+
+/// The levels to write: all that each mesh has, or one of them.
+struct LevelRange {
+  std::size_t first = 0;
+  std::size_t count = 1;
+};
+
+Result<LevelRange> all_levels(const Scene& scene, std::span<const LeveledMesh> meshes) {
+  if (meshes.size() != scene.meshes().size())
+    return fail(ErrorCode::InvalidArgument,
+                text("levels of ", meshes.size(), " meshes for a scene of ", scene.meshes().size()));
+  if (meshes.empty()) return LevelRange{};
+  const std::size_t count = meshes[0].levels.size();
+  if (count == 0) return fail(ErrorCode::InvalidArgument, "a mesh needs at least one level");
+  for (const LeveledMesh& mesh : meshes)
+    if (mesh.levels.size() != count)
+      return fail(ErrorCode::InvalidArgument, text("meshes of ", count, " and of ", mesh.levels.size(), " levels"));
+  return LevelRange{0, count};
+}
+
+/// Writes the file part by part, in the order in which its bytes come.
+class SceneWriter {
+ public:
+  SceneWriter(const Scene& scene, std::span<const LeveledMesh> meshes, LevelRange range, bool with_streams,
+              const AssetOptions& options)
+      : scene_(scene),
+        impl_(scene.impl()),
+        meshes_(meshes),
+        range_(range),
+        with_streams_(with_streams),
+        options_(options),
+        plan_(plan_buffers(impl_)),
+        builder_(impl_.document.json(), plan_.free_slots),
+        written_(meshes.size(), std::vector<WrittenLevel>(range.count)),
+        mesh_index_(meshes.size(), std::vector<std::optional<std::size_t>>(range.count)) {}
+
+  Result<EncodedAsset> write() {
+    LODESTONE_CHECK(prepare());
+    for (std::size_t level = range_.count; level-- > 0;) {
+      LODESTONE_CHECK(add_level(level));
+      if (level + 1 < range_.count) continue;
+      LODESTONE_CHECK(copy_kept_views(impl_.document, plan_, builder_));
+      embed_images(impl_.images, builder_);
+    }
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_meshes(mesh);
+    if (with_streams_)
+      for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_stream(mesh);
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
+      for (const std::size_t node : impl_.sources[mesh].nodes) add_nodes(mesh, node);
+    LODESTONE_TRY(std::vector<std::byte> glb, builder_.finish());
+    layout_.total_bytes = glb.size();
+    return EncodedAsset{std::move(glb), std::move(layout_)};
+  }
+
+ private:
+  const AssetLevel& level_of(std::size_t mesh, std::size_t level) const {
+    return meshes_[mesh].levels[range_.first + level];
+  }
+
+  Result<void> prepare() {
+    builder_.document()["asset"]["generator"] = kGenerator;
+    drop_replaced_extensions(impl_, builder_.document());
+    layout_.levels.resize(range_.count);
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
+      geometry_.emplace_back();
+      for (std::size_t level = 0; level < range_.count; ++level) {
+        LODESTONE_TRY(LevelGeometry matched, match_level(level_of(mesh, level).mesh, impl_.sources[mesh]));
+        geometry_.back().push_back(std::move(matched));
+      }
+    }
+    grids_ = fit_grids(scene_, geometry_, options_);
+    for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh)
+      layout_.quantisation_error = std::max(
+          layout_.quantisation_error, std::sqrt(3.0) / 2 * grids_[mesh].position.step() * scene_.meshes()[mesh].scale);
+    return {};
+  }
+
+  bool repeats_coarser(std::size_t mesh, std::size_t level) const {
+    return level + 1 < range_.count && same_mesh(level_of(mesh, level).mesh, level_of(mesh, level + 1).mesh);
+  }
+
+  Result<void> add_level(std::size_t level) {
+    const std::uint64_t begin = (builder_.binary_bytes() + 3) / 4 * 4;
+    AssetLayout::Level& layout = layout_.levels[level];
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
+      WrittenLevel& written = written_[mesh][level];
+      if (repeats_coarser(mesh, level)) {
+        written = written_[mesh][level + 1];
+      } else {
+        const MeshSource& source = impl_.sources[mesh];
+        LODESTONE_TRY(written, write_level(builder_, impl_.document.json()["meshes"][source.mesh], source,
+                                           geometry_[mesh][level], grids_[mesh], options_));
+      }
+      layout.geometry_bytes += written.byte_count;
+      layout.face_count += written.face_count * scene_.meshes()[mesh].instance_count;
+      layout.vertex_count += written.vertex_count * scene_.meshes()[mesh].instance_count;
+    }
+    layout.byte_offset = begin;
+    layout.byte_length = std::max(begin, builder_.binary_bytes()) - begin;
+    return {};
+  }
+
+  /// The finest level takes the mesh's own place; levels that are equal share a mesh.
+  void add_meshes(std::size_t mesh) {
+    const MeshSource& source = impl_.sources[mesh];
+    erase_extension(builder_.at("meshes", source.mesh), kStreamExtension);
+    const Json original = builder_.at("meshes", source.mesh);
+    for (std::size_t level = 0; level < range_.count; ++level) {
+      const WrittenLevel& written = written_[mesh][level];
+      std::optional<std::size_t>& index = mesh_index_[mesh][level];
+      if (level > 0 && repeats_coarser(mesh, level - 1)) {
+        index = mesh_index_[mesh][level - 1];
+      } else if (level == 0) {
+        builder_.at("meshes", source.mesh)["primitives"] =
+            written.primitives.empty() ? placeholder_primitives() : written.primitives;
+        if (!written.primitives.empty()) index = source.mesh;
+      } else if (!written.primitives.empty()) {
+        Json object = original;
+        if (object.contains("name")) object["name"] = text(string_member(object, "name"), "_LOD", level);
+        object["primitives"] = written.primitives;
+        index = builder_.add("meshes", std::move(object));
+      }
+    }
+  }
+
+  /// glTF has no empty mesh, but the numbers of the others must stay: one triangle of no size, that nothing shows.
+  Json placeholder_primitives() {
+    const Json accessor = {
+        {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {0, 0, 0}}};
+    return Json::array({Json{{"attributes", {{"POSITION", builder_.add("accessors", accessor)}}}}});
+  }
+
+  /// The stream refines to the finest level and so belongs to its mesh; a level without faces has neither.
+  void add_stream(std::size_t mesh) {
+    const std::vector<std::byte>& stream = meshes_[mesh].stream;
+    if (stream.empty() || !mesh_index_[mesh][0]) return;
+    const std::size_t view = builder_.add_view(stream);
+    Json& extensions = builder_.at("meshes", *mesh_index_[mesh][0])["extensions"];
+    if (!extensions.is_object()) extensions = Json::object();
+    extensions[kStreamExtension] = {{"bufferView", view}, {"version", kStreamExtensionVersion}};
+    builder_.use_extension(kStreamExtension);
+    layout_.stream_bytes += stream.size();
+  }
+
+  /// Nodes of one level stay as they are, but for those whose mesh has nothing left to show.
+  void add_nodes(std::size_t mesh, std::size_t node) {
+    if (range_.count == 1) {
+      Json unused;
+      if (!mesh_index_[mesh][0]) move_mesh_members(builder_.at("nodes", node), unused);
+      return;
+    }
+    const std::string name = node_name(mesh, node);
+    Json finest = level_node(mesh, 0, name);
+    move_mesh_members(builder_.at("nodes", node), finest);
+    if (!mesh_index_[mesh][0])
+      for (const char* key : {"mesh", "skin", "weights"}) finest.erase(key);
+    const std::size_t first = builder_.document()["nodes"].size();
+    std::vector<std::size_t> animated;
+    Json ids = Json::array();
+    for (std::size_t level = 1; level < range_.count; ++level) {
+      ids.push_back(first + level);
+      if (mesh_index_[mesh][level]) animated.push_back(first + level);
+    }
+    finest["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
+    finest["extras"]["MSFT_screencoverage"] =
+        coverage_of_levels(std::span(meshes_[mesh].levels).subspan(range_.first, range_.count));
+    builder_.add("nodes", finest);
+    for (std::size_t level = 1; level < range_.count; ++level) add_lower_node(mesh, level, name, finest);
+    builder_.at("nodes", node)["children"].push_back(first);
+    retarget_weights(builder_.document(), node, first, animated);
+    builder_.use_extension("MSFT_lod");
+  }
+
+  void add_lower_node(std::size_t mesh, std::size_t level, const std::string& name, const Json& finest) {
+    Json lower = level_node(mesh, level, name);
+    if (mesh_index_[mesh][level]) {
+      lower["mesh"] = *mesh_index_[mesh][level];
+      copy_instance_members(finest, lower);
+    }
+    builder_.add("nodes", std::move(lower));
+  }
+
+  std::string node_name(std::size_t mesh, std::size_t node) {
+    std::string name = string_member(builder_.at("nodes", node), "name");
+    if (name.empty()) name = scene_.meshes()[mesh].name;
+    return name.empty() ? "mesh" : name;
+  }
+
+  Json level_node(std::size_t mesh, std::size_t level, const std::string& name) const {
+    std::optional<double> position_step;
+    if (options_.draco) position_step = grids_[mesh].position.step();
+    Json node;
+    node["name"] = text(name, "_LOD", level);
+    node["extras"]["lodestone"] = level_numbers(level_of(mesh, level), written_[mesh][level], scene_.meshes()[mesh],
+                                                impl_.sources[mesh].nodes.size(), position_step);
+    return node;
+  }
+
+  const Scene& scene_;
+  const Scene::Impl& impl_;
+  std::span<const LeveledMesh> meshes_;
+  LevelRange range_;
+  bool with_streams_;
+  const AssetOptions& options_;
+  BufferPlan plan_;
+  GlbBuilder builder_;
+  std::vector<std::vector<LevelGeometry>> geometry_;  // by mesh and level, as the next two
+  std::vector<std::vector<WrittenLevel>> written_;
+  std::vector<std::vector<std::optional<std::size_t>>> mesh_index_;  // nothing for a level that shows nothing
+  std::vector<QuantizationGrids> grids_;
+  AssetLayout layout_;
+};
+
+}  // namespace
+
+Result<EncodedAsset> encode_scene(const Scene& scene, std::span<const LeveledMesh> meshes,
+                                  const AssetOptions& options) {
+  LODESTONE_CHECK(check_options(options));
+  LODESTONE_TRY(const LevelRange range, all_levels(scene, meshes));
+  return SceneWriter(scene, meshes, range, true, options).write();
+}
+
+Result<EncodedAsset> encode_scene_level(const Scene& scene, std::span<const LeveledMesh> meshes, std::size_t level,
+                                        const AssetOptions& options) {
+  LODESTONE_CHECK(check_options(options));
+  LODESTONE_TRY(const LevelRange range, all_levels(scene, meshes));
+  if (level >= range.count)
+    return fail(ErrorCode::InvalidArgument, text("level ", level, " of ", range.count, " does not exist"));
+  return SceneWriter(scene, meshes, {level, 1}, false, options).write();
+}
+
+}  // namespace lodestone

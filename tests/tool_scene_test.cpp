@@ -1,0 +1,208 @@
+// What the program makes of scenes of several meshes: shared targets, one file per level, extraction.
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <lodestone/core/assemble.h>
+#include <lodestone/io/asset.h>
+#include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
+
+#include "support/catch.h"
+#include "support/data.h"
+#include "support/gltf_file.h"
+#include "support/program.h"
+#include "support/shapes.h"
+
+using namespace lodestone;
+using namespace lodestone::test;
+
+namespace {
+
+using Json = nlohmann::json;
+using Names = std::vector<std::string>;
+
+void add_mesh(GltfMaker& maker, const char* name, const TriangleSoup& soup) {
+  std::vector<float> positions;
+  for (const Vec3f& p : soup.positions) positions.insert(positions.end(), {p.x, p.y, p.z});
+  const std::size_t vertices = maker.add_floats(positions, "VEC3", 3);
+  const std::size_t indices = maker.add_accessor(soup.indices, 5125, "SCALAR", 1);
+  const GltfJson primitive = {{"attributes", {{"POSITION", vertices}}}, {"indices", indices}};
+  maker.add("meshes", {{"name", name}, {"primitives", GltfJson::array({primitive})}});
+}
+
+/// A large smooth ball, and a small rough one that stands there twice, once enlarged.
+struct SceneShop {
+  ScratchDirectory folder;
+  std::string in = (folder / "in.glb").string();
+  std::string glb = (folder / "out.glb").string();
+  std::string report = (folder / "r.json").string();
+
+  SceneShop() {
+    GltfMaker maker;
+    add_mesh(maker, "smooth", icosphere(3, 0, 1));
+    add_mesh(maker, "rough", icosphere(3, 0.1, 2));
+    maker.add("scenes", {{"nodes", {0, 1, 2}}});
+    maker.add("nodes", {{"name", "large"}, {"mesh", 0}, {"scale", {4, 4, 4}}});
+    maker.add("nodes", {{"name", "small"}, {"mesh", 1}, {"translation", {9, 0, 0}}});
+    maker.add("nodes", {{"name", "middle"}, {"mesh", 1}, {"translation", {0, 9, 0}}, {"scale", {2, 2, 2}}});
+    REQUIRE(write_file(in, maker.glb()));
+  }
+
+  ProgramRun build(std::vector<std::string> options) const {
+    options.insert(options.begin(), {"build", in, "-o", glb, "--report", report});
+    return run_program(options);
+  }
+  Json read_report() const { return Json::parse(file_text(report)); }
+};
+
+std::size_t faces_of(const Json& report, std::size_t mesh, std::size_t level) {
+  return report["meshes"][mesh]["levels"][level]["faces"];
+}
+
+constexpr std::size_t kBallFaces = 1280;
+
+}  // namespace
+
+TEST_CASE("a ratio is shared by the scene: faces go where they keep the error small") {
+  const SceneShop shop;
+  REQUIRE(shop.build({"--levels", "3", "--ratio", "0.4"}).exit_code == 0);
+  const Json report = shop.read_report();
+  CHECK(report["input"]["faces"] == 3 * kBallFaces);
+  for (std::size_t level = 1; level < 3; ++level) {
+    const std::size_t drawn = report["levels"][level]["faces"];
+    const double most = 3 * kBallFaces * std::pow(0.4, level);
+    CHECK(static_cast<double>(drawn) <= most);
+    CHECK(static_cast<double>(drawn) > most - 6);
+    CHECK(drawn == faces_of(report, 0, level) + 2 * faces_of(report, 1, level));
+  }
+  // The two end up with errors of one size in the world, not with one share of their faces.
+  const auto bound = [&](std::size_t mesh) {
+    return report["meshes"][mesh]["levels"][2]["deviation_bound"].get<double>() *
+           report["meshes"][mesh]["scale"].get<double>();
+  };
+  CHECK(std::max(bound(0), bound(1)) < 3 * std::min(bound(0), bound(1)));
+  CHECK(faces_of(report, 0, 2) != faces_of(report, 1, 2));
+}
+
+TEST_CASE("with --per-mesh each mesh gets the target itself") {
+  const SceneShop shop;
+  REQUIRE(shop.build({"--levels", "2", "--ratio", "0.25", "--per-mesh"}).exit_code == 0);
+  Json report = shop.read_report();
+  for (const std::size_t mesh : {0, 1}) {
+    CHECK(faces_of(report, mesh, 1) <= kBallFaces / 4);
+    CHECK(faces_of(report, mesh, 1) > kBallFaces / 4 - 3);
+  }
+  CHECK(report["settings"]["per_mesh"] == true);
+  REQUIRE(shop.build({"--faces", "100", "--per-mesh"}).exit_code == 0);
+  report = shop.read_report();
+  for (const std::size_t mesh : {0, 1}) CHECK(faces_of(report, mesh, 1) <= 100);
+}
+
+TEST_CASE("errors are of the world: scale counts") {
+  const SceneShop shop;
+  REQUIRE(shop.build({"--error", "0.05,0.5%"}).exit_code == 0);
+  const Json report = shop.read_report();
+  const double diagonal = report["input"]["bounding_box"]["diagonal"];
+  CHECK(diagonal > 15);
+  REQUIRE(report["levels"].size() == 3);
+  const std::vector<double> most = {0, 0.05, 0.005 * diagonal};
+  for (std::size_t level = 1; level < 3; ++level) {
+    CHECK(report["levels"][level]["deviation"]["max"].get<double>() <= most[level]);
+    for (const Json& mesh : report["meshes"])
+      CHECK(mesh["levels"][level]["deviation"]["max"].get<double>() * mesh["scale"].get<double>() <= most[level]);
+  }
+  CHECK(report["meshes"][0]["scale"].get<double>() == test::Approx(4));
+  CHECK(report["meshes"][1]["scale"].get<double>() == test::Approx(2));
+  CHECK(report["meshes"][1]["instances"] == 2);
+}
+
+TEST_CASE("the file's numbers are the report's") {
+  const SceneShop shop;
+  REQUIRE(shop.build({"--levels", "3"}).exit_code == 0);
+  const Json report = shop.read_report();
+  const ProgramRun run = run_program({"inspect", shop.glb, "--json"});
+  REQUIRE(run.exit_code == 0);
+  const Json inspected = Json::parse(run.out);
+  REQUIRE(inspected["levels"].size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json &level = inspected["levels"][i], &reported = report["levels"][i];
+    CHECK(level["faces"] == reported["faces"]);
+    CHECK(level["bytes"].get<double>() == test::Approx(reported["bytes"].get<double>()).margin(16));
+    CHECK(level["deviation"]["max"].get<double>() == test::Approx(reported["deviation"]["max"].get<double>()));
+    const Json& ways = reported["deviation"];
+    CHECK(level["deviation"]["mean"].get<double>() ==
+          test::Approx(std::max(ways["forward"]["mean"].get<double>(), ways["backward"]["mean"].get<double>()))
+              .epsilon(0.1));
+  }
+  CHECK(inspected["streams"].size() == 2);
+  CHECK(inspected["streams"][1]["mesh"] == "rough");
+  CHECK(inspected["stream"]["bytes"] == report["stream"]["bytes"]);
+  CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("removal stream of rough"));
+}
+
+TEST_CASE("extract takes a level of the whole scene") {
+  const SceneShop shop;
+  REQUIRE(shop.build({"--levels", "2"}).exit_code == 0);
+  const auto extract = [&](const char* option, const char* value, const std::string& to) {
+    const std::string path = (shop.folder / to).string();
+    REQUIRE(run_program({"extract", shop.glb, option, value, "-o", path}).exit_code == 0);
+    return read_mesh(path).value().mesh;
+  };
+  const auto deviation = [&](const std::string& to) {
+    const ProgramRun run = run_program({"compare", shop.in, (shop.folder / to).string(), "--json"});
+    return Json::parse(run.out)["deviation"]["max"].get<double>();
+  };
+  CHECK(extract("--error", "0", "whole.obj").face_count() == 3 * kBallFaces);
+  CHECK(deviation("whole.obj") < 1e-6);
+  const std::size_t faces = extract("--faces", "900", "faces.ply").face_count();
+  CHECK((faces <= 900 && faces > 894));
+  extract("--error", "0.1", "error.glb");
+  CHECK(deviation("error.glb") <= 0.1);
+  const Scene scene = Scene::read(shop.folder / "error.glb").value();
+  REQUIRE(scene.meshes().size() == 2);
+  CHECK(scene.meshes()[1].nodes == Names{"small", "middle"});
+}
+
+TEST_CASE("the profile of files writes a scene for each level, and an index") {
+  const SceneShop shop;
+  const ProgramRun run = shop.build({"--levels", "3", "--profile", "files"});
+  REQUIRE(run.exit_code == 0);
+  CHECK(names_in(shop.folder.path()) ==
+        Names{"in.glb", "out.json", "out_LOD0.glb", "out_LOD1.glb", "out_LOD2.glb", "r.json"});
+  const Json index = Json::parse(file_text(shop.folder / "out.json")), report = shop.read_report();
+  REQUIRE(index["levels"].size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json& level = index["levels"][i];
+    CHECK(level["file"] == "out_LOD" + std::to_string(i) + ".glb");
+    const auto path = shop.folder / level["file"].get<std::string>();
+    CHECK(level["bytes"] == std::filesystem::file_size(path));
+    CHECK(level["faces"] == report["levels"][i]["faces"]);
+    const Asset asset = read_asset(path).value();
+    CHECK(asset.levels.size() == 1);
+    CHECK(asset.streams.empty());
+    const GltfFile file = GltfFile::read(path);
+    CHECK(file.json["nodes"].size() == 3);
+    CHECK(file.json["meshes"].size() == 2);
+    for (const char* number : {"max", "mean", "rms"}) CHECK(level["deviation"][number].is_number());
+  }
+  CHECK(index["levels"][2]["screen_coverage"] == 0);
+  CHECK(index["levels"][0]["screen_coverage"] >= index["levels"][1]["screen_coverage"]);
+  CHECK(report["output"]["files"].size() == 3);
+}
+
+TEST_CASE("the profile of files writes nothing where one of its files cannot be written") {
+  const SceneShop shop;
+  std::filesystem::create_directory(shop.folder / "out_LOD1.glb");
+  CHECK(shop.build({"--levels", "3", "--profile", "files"}).exit_code == 4);
+  CHECK(names_in(shop.folder.path()) == Names{"in.glb", "out_LOD1.glb"});
+}
+
+TEST_CASE("two runs over a scene write the same bytes") {
+  const SceneShop shop;
+  REQUIRE(shop.build({}).exit_code == 0);
+  const std::string first = file_text(shop.glb);
+  REQUIRE(shop.build({}).exit_code == 0);
+  CHECK(file_text(shop.glb) == first);
+}

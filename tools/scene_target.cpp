@@ -1,0 +1,142 @@
+#include "scene_target.h"
+
+#include <algorithm>
+#include <queue>
+
+#include <lodestone/lod/cursor.h>
+
+namespace lodestone::tool {
+namespace {
+
+/// The world-unit errors of a part's positions, made to fall from coarse to fine: the bounds alone need not.
+std::vector<double> falling_errors(const ScenePart& part) {
+  std::vector<double> errors(part.mesh->deviation.begin(), part.mesh->deviation.end());
+  for (double& error : errors) error *= part.scale;
+  for (std::size_t p = errors.size() - 1; p-- > 0;) errors[p] = std::max(errors[p], errors[p + 1]);
+  return errors;
+}
+
+/// Shares a number of faces among the parts.
+class FaceBudget {
+ public:
+  explicit FaceBudget(std::span<const ScenePart> parts) : parts_(parts) {
+    for (const ScenePart& part : parts) {
+      errors_.push_back(falling_errors(part));
+      faces_.push_back(face_counts(*part.mesh));
+    }
+  }
+
+  /// Returns the positions within the budget, or the coarsest ones where even those exceed it.
+  std::vector<Index> share(double budget) const {
+    std::vector<double> thresholds;
+    for (const auto& errors : errors_) thresholds.insert(thresholds.end(), errors.begin(), errors.end());
+    std::sort(thresholds.begin(), thresholds.end());
+    const auto enough = std::partition_point(thresholds.begin(), thresholds.end(), [&](double threshold) {
+      return static_cast<double>(drawn(within(threshold))) > budget;
+    });
+    if (enough == thresholds.end()) return std::vector<Index>(parts_.size(), 0);
+    std::vector<Index> positions = within(*enough);
+    spend(positions, budget);
+    return positions;
+  }
+
+ private:
+  std::vector<Index> within(double threshold) const {
+    std::vector<Index> positions;
+    for (const auto& errors : errors_)
+      positions.push_back(static_cast<Index>(
+          std::partition_point(errors.begin(), errors.end(), [&](double e) { return e > threshold; }) -
+          errors.begin()));
+    return positions;
+  }
+
+  std::size_t drawn(const std::vector<Index>& positions) const {
+    std::size_t faces = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) faces += faces_[i][positions[i]] * parts_[i].instance_count;
+    return faces;
+  }
+
+  /// Refines the worst part again and again, as long as its next record fits.
+  void spend(std::vector<Index>& positions, double budget) const {
+    struct Candidate {
+      double error;
+      std::size_t part;
+      bool operator<(const Candidate& other) const {
+        return error != other.error ? error < other.error : part > other.part;
+      }
+    };
+    std::priority_queue<Candidate> queue;
+    for (std::size_t i = 0; i < parts_.size(); ++i) queue.push({errors_[i][positions[i]], i});
+    auto left = budget - static_cast<double>(drawn(positions));
+    while (!queue.empty()) {
+      const std::size_t i = queue.top().part;
+      queue.pop();
+      Index& position = positions[i];
+      if (position + 1 >= faces_[i].size()) continue;
+      const auto cost = static_cast<double>((faces_[i][position + 1] - faces_[i][position]) * parts_[i].instance_count);
+      if (cost > left) continue;
+      left -= cost;
+      queue.push({errors_[i][++position], i});
+    }
+  }
+
+  std::span<const ScenePart> parts_;
+  std::vector<std::vector<double>> errors_;
+  std::vector<std::vector<Index>> faces_;
+};
+
+double diagonal_of(const ProgressiveMesh& mesh) {
+  Cursor cursor(mesh);
+  cursor.seek(static_cast<Index>(mesh.record_count()));
+  return bounding_box(extract_level(mesh, cursor)).diagonal();
+}
+
+/// Answers a target that is relative to the part itself; errors are world units.
+LevelChoice choose_for_part(const ScenePart& part, const LevelTarget& target) {
+  FullSize full{face_counts(*part.mesh).back(), 0};
+  if (target.relative && target.kind == TargetKind::Error) full.diagonal = diagonal_of(*part.mesh);
+  LevelTarget absolute = resolve(target, full);
+  if (target.kind == TargetKind::Error && !target.relative) absolute.value /= part.scale;
+  return choose_level(*part.mesh, absolute, part.end);
+}
+
+SceneChoice choose_each(std::span<const ScenePart> parts, const LevelTarget& target) {
+  SceneChoice choice{target, {}, true, std::string(name_of(target.kind))};
+  bool all_stopped = !parts.empty();
+  for (const ScenePart& part : parts) {
+    const LevelChoice own = choose_for_part(part, target);
+    choice.positions.push_back(own.position);
+    choice.met &= own.met;
+    all_stopped &= own.stopped_by != name_of(target.kind);
+  }
+  if (all_stopped) choice.stopped_by = name_of(parts[0].end);
+  return choice;
+}
+
+}  // namespace
+
+std::size_t drawn_faces(std::span<const ScenePart> parts) {
+  std::size_t faces = 0;
+  for (const ScenePart& part : parts) faces += face_counts(*part.mesh).back() * part.instance_count;
+  return faces;
+}
+
+std::size_t drawn_faces(std::span<const ScenePart> parts, std::span<const Index> positions) {
+  std::size_t faces = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    faces += face_counts(*parts[i].mesh)[positions[i]] * parts[i].instance_count;
+  return faces;
+}
+
+SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
+                             double diagonal) {
+  if (scope == TargetScope::Mesh) return choose_each(parts, target);
+  const LevelTarget absolute = resolve(target, {drawn_faces(parts), diagonal});
+  if (absolute.kind != TargetKind::Faces) return choose_each(parts, absolute);
+  SceneChoice choice{absolute, FaceBudget(parts).share(absolute.value), true, std::string(name_of(absolute.kind))};
+  choice.met = static_cast<double>(drawn_faces(parts, choice.positions)) <= absolute.value;
+  if (!choice.met) choice.stopped_by = parts.empty() ? "stuck" : name_of(parts[0].end);
+  return choice;
+}
+
+}  // namespace lodestone::tool

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+#include <lodestone/lod/progressive_mesh.h>
+#include <lodestone/lod/simplify.h>
+
+#include "level_target.h"
+
+namespace lodestone::tool {
+
+/// A progressive mesh in a scene.
+struct ScenePart {
+  const ProgressiveMesh* mesh = nullptr;
+  double scale = 1;                ///< world units per mesh unit
+  std::size_t instance_count = 1;  ///< how often it is drawn
+  StopReason end = StopReason::Stuck;
+};
+
+/// What a target counts over.
+enum class TargetScope {
+  Scene,  ///< the drawn faces of all meshes together, and one error in world units
+  Mesh,   ///< each mesh by itself
+};
+
+/// The levels of all parts that answer a target together.
+struct SceneChoice {
+  LevelTarget target;            ///< in absolute numbers where its scope is the scene
+  std::vector<Index> positions;  ///< one for each part
+  bool met = true;
+  std::string stopped_by;  ///< why the level is no coarser: faces, error, epsilon; or stuck
+};
+
+/// Returns the faces that are drawn with every part at full detail, or at the positions given.
+std::size_t drawn_faces(std::span<const ScenePart> parts);
+std::size_t drawn_faces(std::span<const ScenePart> parts, std::span<const Index> positions);
+
+/// Finds the positions that answer a target. Faces go where they keep the largest deviation in world units small: all
+/// parts get the coarsest level within one error, the smallest for which the faces suffice, and what is left goes to
+/// whichever part deviates most. `diagonal` is the scene's.
+SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
+                             double diagonal);
+
+}  // namespace lodestone::tool
