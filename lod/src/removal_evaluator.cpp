@@ -34,6 +34,10 @@ bool rejects(Verdict verdict) { return verdict != Verdict::Legal; }
 
 }  // namespace
 
+double hybrid_cost(double moved, double turned) {
+  return std::pow(moved, kDistanceExponent) * std::pow(std::max(turned, kMinCurvatureChange), 1 - kDistanceExponent);
+}
+
 RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options)
     : state_(&state),
       options_(&options),
@@ -727,7 +731,7 @@ Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
   if (!is_hybrid) return result;
   const double swept = std::sqrt(std::cbrt(std::sqrt(squared_volume)) * std::sqrt(squared_distance));
   const double moved = swept + line_cost(record.vertex) + std::sqrt(squared_attributes);
-  result.cost = std::pow(moved, 0.9) * std::pow(std::max(result.curvature_error, kMinCurvatureChange), 0.1);
+  result.cost = hybrid_cost(moved, result.curvature_error);
   return result;
 }
 

@@ -21,6 +21,11 @@ namespace lodestone::detail {
 /// Larger rings wait until their neighbours' removals have shrunk them.
 inline constexpr std::size_t kMaxRing = 64;
 
+/// The cost of a removal by the hybrid metric: `moved` is what it moves, a length, `turned` the change of curvature in
+/// radians, which only orders removals that move alike.
+inline constexpr double kDistanceExponent = 0.9;
+double hybrid_cost(double moved, double turned);
+
 /// What the evaluation of a removal found.
 enum class Verdict : std::uint8_t { Legal, Locked, Flip, Link, Ring };
 

@@ -62,6 +62,8 @@ class Simplifier {
   void update_dirty();
   bool allow_any_angle();
   bool target_met();
+  void note_charge(double cost);
+  std::vector<float> charges() const;
 
   void price_pieces();
   bool remove_pieces(bool stuck);
@@ -84,7 +86,8 @@ class Simplifier {
   std::vector<std::uint8_t> piece_moves_;                 // whether any of its vertices can be removed
   float limit_ = 0;  // the cost that bounds this round's removals
 
-  std::vector<float> cost_;  // by vertex; of several copies the first stands for all
+  std::vector<float> charge_;  // by removal, in order
+  std::vector<float> cost_;    // by vertex; of several copies the first stands for all
   std::vector<Verdict> verdict_;
   std::vector<Choice> choice_;
   std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
@@ -193,6 +196,7 @@ void Simplifier::remove(const Evaluation& evaluation) {
   }
   bounds_.add(removal_);
   builder_.add(removal_, evaluation.curvature_error);
+  note_charge(evaluation.cost);
   const Index vertex = removal_.front().vertex;
   pieces_.lose_faces(pieces_.piece_of(vertex), before - state_.connectivity.face_count());
   cost_[state_.connectivity.site(vertex)] = kIllegal;
@@ -200,14 +204,27 @@ void Simplifier::remove(const Evaluation& evaluation) {
 
 void Simplifier::try_remove(Index vertex) {
   if (!ring_is_free(vertex)) return;
-  const Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
+  Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
   // Its surroundings may have changed since it was ranked.
   verdict_[vertex] = evaluation.verdict;
   if (evaluation.verdict != Verdict::Legal || evaluation.curvature_error > options_.stop.max_curvature_error) {
     cost_[vertex] = kIllegal;
     return;
   }
+  evaluation.cost = static_cast<double>(cost_[vertex]);  // as ranked, importance included
   remove(evaluation);
+}
+
+void Simplifier::note_charge(double cost) {
+  const double length = options_.metric == Metric::Hybrid ? std::pow(cost, 1 / kDistanceExponent) : cost;
+  charge_.push_back(std::max(static_cast<float>(length), charge_.empty() ? 0.0F : charge_.back()));
+}
+
+/// The charges by position, coarse to fine.
+std::vector<float> Simplifier::charges() const {
+  std::vector<float> result(charge_.rbegin(), charge_.rend());
+  result.push_back(0);
+  return result;
 }
 
 bool Simplifier::target_met() {
@@ -275,7 +292,7 @@ void Simplifier::price_pieces() {
     }
     const double loss = pieces_.loss(state_.mesh, piece);
     const bool is_hybrid = options_.metric == Metric::Hybrid;
-    double cost = is_hybrid ? std::pow(loss, 0.9) * std::pow(static_cast<double>(error), 0.1) : static_cast<double>(error);
+    double cost = is_hybrid ? hybrid_cost(loss, static_cast<double>(error)) : static_cast<double>(error);
     cost *= static_cast<double>(importance);
     const bool stays = open || importance >= kLockingImportance || error > options_.stop.max_curvature_error;
     piece_cost_.push_back(stays ? kIllegal : static_cast<float>(cost));
@@ -332,6 +349,7 @@ void Simplifier::remove_piece(Index piece) {
     builder_.add(std::span(records).subspan(i, j - i), static_cast<double>(piece_error_[piece]));
     bounds_.repeat();
     builder_.end_round();
+    note_charge(static_cast<double>(piece_cost_[piece]));
   }
 }
 
@@ -399,6 +417,7 @@ SimplifyResult Simplifier::run() {
   bounds_.stop_measuring();
   result.stop_reason = stop_reason_;
   result.evaluation_count = evaluation_count_;
+  result.charge = charges();
   result.mesh = builder_.finish(bounds_.bounds());
   return result;
 }

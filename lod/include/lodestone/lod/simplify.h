@@ -86,6 +86,10 @@ struct SimplifyResult {
   ProgressiveMesh mesh;
   StopReason stop_reason = StopReason::Stuck;
   BlockedCounts blocked;          ///< of the base mesh's vertices
+  /// By position, as `mesh.deviation`: the most that any removal between the full mesh and the position was charged. It
+  /// never falls towards the base, so that meshes simplified alike can share faces by it. Mesh units, but radians for
+  /// Metric::Gaussian.
+  std::vector<float> charge;
   std::size_t evaluation_count = 0;
 };
 
