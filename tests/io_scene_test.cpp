@@ -671,6 +671,16 @@ TEST_CASE("files with levels already are refused, and those of other programs ar
   CHECK(scene.error().code == ErrorCode::Unsupported);
 }
 
+TEST_CASE("attributes of a type that vertices may not have are left out, with a note") {
+  GltfMaker maker = strips(1, 4);
+  const std::size_t ids = maker.add_accessor(std::vector<std::uint32_t>(10, 3), 5125, "SCALAR", 1);
+  maker.json["meshes"][0]["primitives"][0]["attributes"]["_ID"] = ids;
+  const Scene scene = read(maker);
+  REQUIRE(scene.notes().size() == 1);
+  CHECK_THAT(scene.notes()[0], contains("mesh 0: attribute _ID is left out"));
+  CHECK_FALSE(encoded(scene, {}).json["meshes"][0]["primitives"][0]["attributes"].contains("_ID"));
+}
+
 TEST_CASE("broken scenes are errors that name what is broken") {
   struct Breakage {
     const char* pointer;
