@@ -463,7 +463,7 @@ TEST_CASE("morph targets, sparse ones too, stay with their vertices") {
       std::memcpy(positions.data(), bytes.data(), bytes.size());
       CHECK(morphed_corners(out, out.json["meshes"][0]["primitives"][0], positions) == expected);
     }
-    CHECK(out.json["meshes"][0]["primitives"][0]["extensions"].contains("KHR_draco_mesh_compression") == draco);
+    CHECK(out.json["meshes"][0]["primitives"][0].contains("extensions") == draco);
     CHECK(out.json["meshes"][1]["weights"] == maker.json["meshes"][0]["weights"]);
     CHECK((*lod_node(out, "node_LOD1"))["weights"] == maker.json["nodes"][0]["weights"]);
     check_nodes(GltfFile::from_glb(maker.glb()), out);
