@@ -13,6 +13,7 @@ namespace lodestone::detail {
 struct JoinedMesh {
   SceneMesh mesh;
   MeshSource source;
+  std::vector<std::string> left_out;  ///< names of attributes of types that glTF vertices may not have
 };
 
 /// Joins the triangles of a mesh's primitives; nothing for a mesh without any that `assemble` keeps.

@@ -70,6 +70,9 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
     LODESTONE_TRY(auto joined, join_primitives(scene.document, number));
     if (!joined) continue;
     joined->source.nodes = nodes;
+    for (const std::string& name : joined->left_out)
+      scene.notes.push_back(
+          text("mesh ", number, ": attribute ", name, " is left out: glTF vertices have no such type"));
     if (with_streams) {
       LODESTONE_TRY(joined->mesh.stream, read_stream(scene.document, number));
     }
