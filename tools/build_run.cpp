@@ -30,6 +30,7 @@ constexpr double kMostFacesOfOneRemoval = 2;
 AssemblyReport assembly_of(const Scene& scene) {
   AssemblyReport total;
   for (const SceneMesh& mesh : scene.meshes()) total = total + mesh.assembly;
+  for (const AssemblyReport& dropped : scene.dropped()) total = total + dropped;
   return total;
 }
 

@@ -141,7 +141,7 @@ Result<std::optional<JoinedMesh>> join_primitives(const GltfDocument& document, 
   }
   complete_attributes(joined.source, soup);
   LODESTONE_TRY(AssembledMesh assembled, assemble(soup));
-  if (assembled.mesh.face_count() == 0) return std::optional<JoinedMesh>();
+  if (assembled.mesh.face_count() == 0 && soup.indices.empty()) return std::optional<JoinedMesh>();
   joined.mesh.name = string_member(*json, "name");
   joined.mesh.mesh = std::move(assembled.mesh);
   joined.mesh.assembly = assembled.report;

@@ -195,6 +195,7 @@ Index position_for_faces(const ProgressiveMesh& mesh, std::uint64_t face_count) 
   const auto beyond = std::upper_bound(counts.begin(), counts.end(), face_count);
   auto position = beyond == counts.begin() ? Index{0} : static_cast<Index>(beyond - counts.begin() - 1);
   while (!is_whole(mesh, position)) --position;
+  while (position > 0 && counts[position - 1] == counts[position]) --position;  // vertices of a piece yet to come
   return position;
 }
 
