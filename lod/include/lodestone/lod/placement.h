@@ -7,7 +7,7 @@
 namespace lodestone {
 
 struct PlacementOptions {
-  int iterations = 6;                  ///< of fitting; each one moves all vertices
+  int iterations = 8;                  ///< of fitting; each one moves all vertices
   std::size_t samples_per_face = 60;   ///< at most, of the level's faces: where the original has more, some are left out
 };
 
