@@ -11,6 +11,7 @@
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
 
+#include "build_html.h"
 #include "build_options.h"
 #include "build_output.h"
 #include "build_report.h"
@@ -106,6 +107,8 @@ class BuildRun {
   Result<void> encode_streams();
   Result<std::vector<EncodedAsset>> encode() const;
   Result<void> write();
+  Result<std::string> page() const;
+  std::vector<ScenePart> parts() const;
   void report_layouts(std::span<const EncodedAsset> assets);
 
   const BuildCommand& options_;
@@ -242,17 +245,23 @@ std::vector<double> BuildRun::world_charges(const SimplifyResult& result, double
   return charges;
 }
 
-void BuildRun::make_levels() {
-  progress_.start("measuring levels");
+std::vector<ScenePart> BuildRun::parts() const {
   std::vector<ScenePart> parts;
-  SceneChoice whole{{}, {}, true, "whole"};
   for (std::size_t i = 0; i < simplified_.size(); ++i) {
     const SceneMesh& mesh = scene_->meshes()[i];
-    const ProgressiveMesh& progressive = simplified_[i].mesh;
-    parts.push_back({&progressive, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
+    parts.push_back({&simplified_[i].mesh, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
                      settings_.importance_of(mesh), world_charges(simplified_[i], mesh.scale)});
-    whole.positions.push_back(static_cast<Index>(progressive.record_count()));
-    cursors_.emplace_back(progressive);
+  }
+  return parts;
+}
+
+void BuildRun::make_levels() {
+  progress_.start("measuring levels");
+  const std::vector<ScenePart> parts = this->parts();
+  SceneChoice whole{{}, {}, true, "whole"};
+  for (const SimplifyResult& result : simplified_) {
+    whole.positions.push_back(static_cast<Index>(result.mesh.record_count()));
+    cursors_.emplace_back(result.mesh);
   }
   levels_.resize(parts.size());
   last_positions_ = whole.positions;
@@ -365,10 +374,19 @@ Result<void> BuildRun::write() {
   const Result<std::vector<EncodedAsset>> assets = encode();
   if (!assets) return tl::unexpected(assets.error());
   report_layouts(*assets);
+  list_files(options_, *assets, report_);
   report_.timings_ms.write = stopwatch_.lap_ms();
-  const Result<void> done = write_outputs(options_, *assets, report_);
+  const Result<std::string> html = page();
+  if (!html) return tl::unexpected(html.error());
+  const Result<void> done = write_outputs(options_, *assets, report_, *html);
   progress_.clear();
   return done;
+}
+
+/// Returns the page of --html; nothing without it.
+Result<std::string> BuildRun::page() const {
+  if (!options_.html) return std::string();
+  return build_page(report_, *scene_, levels_, wants_streams() ? parts() : std::vector<ScenePart>());
 }
 
 void BuildRun::report_layouts(std::span<const EncodedAsset> assets) {
