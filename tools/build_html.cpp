@@ -57,7 +57,7 @@ Json bounds_json(std::span<const ScenePart> parts) {
 Result<std::string> build_page(const BuildReport& report, const Scene& scene, std::span<const LeveledMesh> levels,
                                std::span<const ScenePart> streams) {
   HtmlReport page;
-  page.title = std::filesystem::path(report.input.path).filename().string();
+  page.title = "Levels of " + std::filesystem::path(report.input.path).filename().string();
   page.diagonal = report.input.box.diagonal();
   Json numbers = report_json(report);
   numbers.erase("timings_ms");

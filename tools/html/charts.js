@@ -110,8 +110,8 @@ function drawCurve(place, levels, bounds, diagonal, shown) {
   const lowError = Math.max(Math.min(...drawable.flatMap((l) => SERIES.map(({ name }) => l[name] / diagonal)).filter((e) => e > 0),
     Math.max(...errors)) / 4, Math.min(...errors));
   const range = { x: [Math.min(...faces) / 1.1, Math.max(...faces) * 1.1], y: [lowError / 1.2, Math.max(...errors) * 1.4] };
-  const left = 66, right = 14, base = 262, top = 34;
-  const { root, width, add } = canvasOf(place, 304, 'Error against faces, both on logarithmic axes; the table has the numbers.');
+  const left = 66, right = 14, base = 280, top = 52;
+  const { root, width, add } = canvasOf(place, 322, 'Error against faces, both on logarithmic axes; the table has the numbers.');
   const along = (value, [low, high]) => Math.log(value / low) / Math.log(high / low);
   const x = (count) => left + (width - left - right) * along(count, range.x);
   const y = (share) => base - (base - top) * along(share, range.y);
@@ -138,12 +138,17 @@ function drawCurve(place, levels, bounds, diagonal, shown) {
     add('polyline', { points: points.map((p) => p.join(',')).join(' '), fill: 'none', stroke: colour, 'stroke-width': 2, 'stroke-dasharray': dash });
     for (const [px, py] of points) add('path', { d: marker, transform: `translate(${px},${py})`, fill: colour });
   }
-  let at = left;
+  let at = 2, row = 10;
   const legend = [...SERIES, ...(line ? [{ name: 'stream’s bound', colour: 'var(--soft)', dash: '' }] : [])];
   for (const { name, colour, dash, marker } of legend) {
-    add('line', { x1: at, x2: at + 24, y1: 10, y2: 10, stroke: colour, 'stroke-width': 2, 'stroke-dasharray': dash });
-    if (marker) add('path', { d: marker, transform: `translate(${at + 12},10)`, fill: colour });
-    const label = add('text', { class: 'strong', x: at + 29, y: 14 }, name);
-    at += 29 + label.getComputedTextLength() + 14;
+    const label = svg('text', { class: 'strong' }, name);
+    root.append(label);
+    const length = 29 + label.getComputedTextLength();
+    if (at + length > width) [at, row] = [2, row + 18];
+    label.setAttribute('x', at + 29);
+    label.setAttribute('y', row + 4);
+    add('line', { x1: at, x2: at + 24, y1: row, y2: row, stroke: colour, 'stroke-width': 2, 'stroke-dasharray': dash });
+    if (marker) add('path', { d: marker, transform: `translate(${at + 12},${row})`, fill: colour });
+    at += length + 14;
   }
 }

@@ -27,7 +27,8 @@ const levels = isBuild
     vertices: numbers.comparison[key].vertices, bytes: numbers.bytes[i], deviation: i === 0 ? null : numbers.comparison.deviation,
   }));
 
-const both = (deviation, name) => Math.max(deviation.forward[name], deviation.backward[name]);
+const finite = (value) => value ?? Infinity; // JSON has no infinity: a level without faces is that far away
+const both = (deviation, name) => Math.max(finite(deviation.forward[name]), finite(deviation.backward[name]));
 const tagOf = (level) => [make('strong', { textContent: level.name }), ` · ${whole(level.faces)} faces`];
 
 const state = { left: 0, right: Math.min(levels.length - 1, isBuild ? 2 : 1), upper: null };
@@ -81,6 +82,10 @@ async function showPanes() {
     const wanted = [await picture(state.left), await picture(state.right)];
     const errors = spread && get('coloured').checked && spread.max > 0 ? (await picture(compared)).errors : null;
     const upper = errors ? upperError() / spread.max : 0;
+    // The legend stands in the pane that has the colours, in the upper or left one where that is both.
+    get('ramp').hidden = !errors || (state.left !== 0 && state.right !== 0);
+    get('ramp').className = state.left === 0 ? '' : 'second';
+    if (errors) get('ramp-end').textContent = percent(upper * spread.max / diagonal);
     [state.left, state.right].forEach((level, pane) => viewer.show(pane, wanted[pane].mesh, level === 0 ? errors : null, upper));
     get('status').textContent = '';
     document.documentElement.dataset.ready = 'true';
@@ -96,6 +101,7 @@ function colourAt(share) {
 }
 
 function showCharts() {
+  get('curve-figure').hidden = !isBuild || levels.length < 2;
   const compared = comparedLevel(), spread = spreadOf(compared);
   const empty = !spread || !(spread.max > 0);
   get('upper').disabled = empty;
@@ -112,29 +118,30 @@ function showCharts() {
     drawHistogram(get('histogram'), spread, upper, diagonal, colourAt);
   }
   if (!isBuild || levels.length < 2) return;
-  get('curve-figure').hidden = false;
   const points = levels.map(({ faces, deviation }) => (deviation
     ? { faces, maximum: both(deviation, 'max'), rms: both(deviation, 'rms'), mean: both(deviation, 'mean') }
     : { faces, maximum: 0, rms: 0, mean: 0 }));
   get('curve-text').textContent = 'Of each level, the larger of both directions, in % of the diagonal'
-    + (numbers.bounds.length > 0 ? '; and what the removal stream promises for every level that can be taken from it.' : '.')
+    + (numbers.bounds.length > 0 ? '; and the faces that the removal stream needs to keep to an error, as it can prove.' : '.')
     + ' The original has no error and is not on the chart.';
   if (points.some(({ maximum }) => maximum > 0)) drawCurve(get('curve'), points, numbers.bounds, diagonal, compared);
 }
 
 function cell(length) {
-  return make('td', {}, percent(length / diagonal), make('small', { textContent: number(length) }));
+  return length === null ? make('td', { textContent: '∞' }) : make('td', {}, percent(length / diagonal), make('small', { textContent: number(length) }));
 }
 
 function showTable() {
   const compared = comparedLevel();
-  const head = make('thead', {}, make('tr', {}, ...[
-    [isBuild ? 'Level' : 'Surface', 1], ['Faces', 1], ['Vertices', 1], ['Bytes', 1],
-    [isBuild ? 'Original to level' : 'A to B', 3], [isBuild ? 'Level to original' : 'B to A', 3], ['Normals', 1],
-    ...(isBuild ? [['Proved within', 1]] : [])].map(([text, span]) => make('th', {
-    scope: span > 1 ? 'colgroup' : 'col', colSpan: span, className: span > 1 ? 'begin' : '', textContent: text }))),
-  make('tr', {}, ...['', '', '', '', 'max', 'mean', 'rms', 'max', 'mean', 'rms', 'mean angle', ...(isBuild ? [''] : [])]
-    .map((text, i) => make(text ? 'th' : 'td', { textContent: text, className: i === 4 || i === 7 || i === 10 ? 'begin' : '', ...(text && { scope: 'col' }) }))));
+  const title = (text, span, first) => make('th', { textContent: text, scope: span > 1 ? 'colgroup' : 'col', colSpan: span,
+    rowSpan: span > 1 ? 1 : 2, className: first ? 'begin' : '' });
+  const parts = isBuild ? ['Original to level', 'Level to original'] : ['A to B', 'B to A'];
+  const head = make('thead', {},
+    make('tr', {}, title(isBuild ? 'Level' : 'Surface', 1), title('Faces', 1), title('Vertices', 1), title('Bytes', 1),
+      title(parts[0], 3, true), title(parts[1], 3, true), title('Normals’ mean angle', 1, true),
+      ...(isBuild ? [title('Bound of the stream', 1)] : [])),
+    make('tr', {}, ...['max', 'mean', 'rms', 'max', 'mean', 'rms'].map((text, i) =>
+      make('th', { textContent: text, scope: 'col', className: i % 3 === 0 ? 'begin' : '' }))));
   const body = make('tbody', {}, ...levels.map((level, i) => {
     const row = make('tr', { className: i > 0 && i === compared && levels.length > 2 ? 'shown' : '' });
     row.append(make('th', { scope: 'row', textContent: isBuild ? level.name : `${'AB'[i]}: ${level.name}` }));
@@ -147,7 +154,7 @@ function showTable() {
       for (const name of ['max', 'mean', 'rms']) row.append(cell(level.deviation[way][name]));
     row.children[4].className = row.children[7].className = 'begin';
     row.append(make('td', { className: 'begin', textContent: `${number(level.deviation.mean_normal_angle_degrees)}°` }));
-    if (isBuild) row.append(level.bound === null ? make('td', { textContent: '∞' }) : cell(level.bound));
+    if (isBuild) row.append(cell(level.bound));
     return row;
   }));
   get('table').replaceChildren(head, body);
@@ -276,16 +283,18 @@ function listen() {
     event.preventDefault();
   });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => viewer?.redraw());
-  let width = innerWidth;
-  addEventListener('resize', () => {
-    if (innerWidth !== width) showCharts();
-    width = innerWidth;
-  });
+  let width = get('histogram').clientWidth;
+  new ResizeObserver(() => {
+    if (get('histogram').clientWidth === width) return;
+    width = get('histogram').clientWidth;
+    showCharts();
+  }).observe(get('histogram'));
 }
 
 function start() {
   if (levels.length <= 2) get('level-help').hidden = get('keep-label').hidden = true;
   makeTags();
+  document.querySelector('#ramp .colours').style.background = `linear-gradient(to right, ${page.colours.join(', ')})`;
   showLimits();
   try {
     if (typeof DecompressionStream === 'undefined') throw new Error('this browser cannot unpack it; a newer one can');

@@ -43,19 +43,21 @@ void main() {
     if (dot(n, facet) < 0.0) n = -n;
   }
   vec3 colour = upper > 0.0 ? texture(colours, vec2(min(share / upper, 1.0) * 0.99609375 + 0.001953125, 0.5)).rgb : plain;
-  float light = 0.5 + 0.42 * max(dot(n, normalize(vec3(-0.4, 0.55, 0.75))), 0.0) + 0.1 * max(n.z, 0.0);
+  // Colours are to be read against their legend: they are shaded less.
+  float lit = 0.85 * max(dot(n, normalize(vec3(-0.4, 0.55, 0.75))), 0.0) + 0.15 * max(n.z, 0.0);
+  float light = upper > 0.0 ? 0.74 + 0.26 * lit : 0.5 + 0.52 * lit;
   if (!gl_FrontFacing) { colour = mix(colour, vec3(0.35, 0.45, 0.75), 0.35); light *= 0.7; }
   vec3 width = fwidth(corner);
-  vec3 inside = smoothstep(width * 0.3, width * 1.3, corner);
+  vec3 inside = smoothstep(width * 0.2, width * 0.95, corner);
   float line = 1.0 - min(min(inside.x, inside.y), inside.z);
-  float dense = smoothstep(0.15, 0.6, max(max(width.x, width.y), width.z));
+  float dense = smoothstep(0.08, 0.45, max(max(width.x, width.y), width.z));
   if (surface == 3) {
-    if (line < 0.4) discard;
+    if (line < 0.35) discard;
     result = vec4(upper > 0.0 ? colour : mix(edgeColour, plain, 0.15), 1.0);
     return;
   }
   colour *= light;
-  if (surface == 2) colour = mix(colour, edgeColour, line * mix(0.6, 0.08, dense));
+  if (surface == 2) colour = mix(colour, edgeColour, line * mix(upper > 0.0 ? 0.45 : 0.6, 0.0, dense));
   result = vec4(colour, 1.0);
 }`;
 
@@ -76,8 +78,9 @@ function rgbOf(hex) {
 
 /** Turns around a point: angles, distance and what the camera looks at. Pure numbers, no drawing. */
 class Camera {
-  constructor(radius) {
-    this.radius = radius;
+  /** Lengths are in diagonals of the box; `radius` is what has to be seen around its middle. */
+  constructor() {
+    this.radius = 0.5;
     this.up = 'y';
     this.reset();
   }
@@ -117,7 +120,7 @@ class Camera {
     for (let row = 0; row < 3; ++row)
       view[12 + row] = -[0, 1, 2].reduce((sum, i) => sum + turn[4 * i + row] * this.target[i], 0);
     view[14] -= distance;
-    const reach = this.radius + Math.hypot(...this.target);
+    const reach = 0.51 + Math.hypot(...this.target); // half a diagonal: nothing lies farther out
     const near = Math.max(distance - reach, distance / 100), far = distance + reach;
     const f = 1 / Math.tan(FIELD_OF_VIEW / 2);
     const projection = new Float32Array([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1,
@@ -135,7 +138,7 @@ class Viewer {
     // A unit of its own keeps very small and very large models within what floats draw well.
     const sides = box.high.map((x, i) => x - box.low[i]);
     this.size = sides.map((x) => x / (Math.hypot(...sides) || 1));
-    this.camera = new Camera(0.5);
+    this.camera = new Camera();
     this.panes = [null, null]; // { mesh, errors, upper }
     this.surface = 'edges';
     this.prepare(colours);
@@ -175,6 +178,7 @@ class Viewer {
     const corners = new Uint16Array(4 * faces.length);
     for (let c = 0; c < faces.length; ++c)
       for (let i = 0; i < 3; ++i) corners[4 * c + i] = positions[3 * faces[c] + i];
+    this.fitCamera(positions);
     const mesh = { faces, count: faces.length, array: gl.createVertexArray(), errors: gl.createBuffer(), shown: null };
     gl.bindVertexArray(mesh.array);
     this.attribute(0, corners, 3, gl.UNSIGNED_SHORT, 8);
@@ -184,6 +188,18 @@ class Viewer {
     gl.enableVertexAttribArray(2);
     gl.vertexAttribPointer(2, 1, gl.UNSIGNED_BYTE, true, 1, 0);
     return mesh;
+  }
+
+  /** Brings the camera as near as the first mesh allows. */
+  fitCamera(positions) {
+    if (this.fitted || positions.length === 0) return;
+    let squares = 0;
+    for (let v = 0; v < positions.length; v += 3) {
+      const [x, y, z] = [0, 1, 2].map((i) => (positions[v + i] / 65535 - 0.5) * this.size[i]);
+      squares = Math.max(squares, x * x + y * y + z * z);
+    }
+    this.camera.radius = Math.sqrt(squares) || 0.5;
+    this.fitted = true;
   }
 
   attribute(place, data, width, type, stride) {
