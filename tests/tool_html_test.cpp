@@ -1,4 +1,5 @@
-// The pages that --html writes and the heatmaps of --heatmap: whole, with the numbers of the JSON, safe against any name.
+// The pages that --html writes and the heatmaps of --heatmap: whole, with the numbers of the JSON, safe against any
+// name.
 
 #include <algorithm>
 #include <cmath>
@@ -93,8 +94,7 @@ Json without_timings(Json report) {
 double lightness(const Attribute& colours, std::size_t wedge) {
   const auto component = [&](std::size_t i) {
     const std::size_t at = wedge * colours.element_bytes() + i * component_bytes(colours.type);
-    if (colours.type == ComponentType::UInt8)
-      return std::pow(std::to_integer<int>(colours.data[at]) / 255.0, 2.2);
+    if (colours.type == ComponentType::UInt8) return std::pow(std::to_integer<int>(colours.data[at]) / 255.0, 2.2);
     return (std::to_integer<int>(colours.data[at]) + 256 * std::to_integer<int>(colours.data[at + 1])) / 65535.0;
   };
   return 0.2126 * component(0) + 0.7152 * component(1) + 0.0722 * component(2);
@@ -124,8 +124,15 @@ TEST_CASE("compare writes a page with the numbers of its JSON") {
 
 TEST_CASE("build writes a page with the numbers of its report, the same in every run") {
   const Pair pair;
-  const Names build = {"build", pair.a, "-o", pair.file("out.glb"), "--quiet", "--html", pair.file("page.html"),
-                       "--report", pair.file("r.json")};
+  const Names build = {"build",
+                       pair.a,
+                       "-o",
+                       pair.file("out.glb"),
+                       "--quiet",
+                       "--html",
+                       pair.file("page.html"),
+                       "--report",
+                       pair.file("r.json")};
   REQUIRE(run_program(build).exit_code == 0);
   const std::string page = file_text(pair.folder / "page.html");
   const Json data = data_of(page);
@@ -149,8 +156,8 @@ TEST_CASE("build writes a page with the numbers of its report, the same in every
 
 TEST_CASE("a page can be had of every kind of build") {
   const Pair pair;
-  const Names options = GENERATE(Names{"--profile", "files"}, Names{"--no-stream", "--levels", "2"}, Names{"--levels", "1"},
-                                 Names{"--vanish", "--faces", "100,1"});
+  const Names options = GENERATE(Names{"--profile", "files"}, Names{"--no-stream", "--levels", "2"},
+                                 Names{"--levels", "1"}, Names{"--vanish", "--faces", "100,1"});
   CAPTURE(options);
   Names build = {"build", pair.a, "-o", pair.file("out.glb"), "--quiet", "--html", pair.file("page.html")};
   build.insert(build.end(), options.begin(), options.end());
@@ -163,7 +170,8 @@ TEST_CASE("names are text on the page, never markup") {
   const std::string nasty = "<script>alert(1)<!--&\"'{{data}}.obj";
   const Pair pair(nasty);
   REQUIRE(run_program({"compare", pair.a, pair.b, "--html", pair.file("page.html")}).exit_code == 0);
-  REQUIRE(run_program({"build", pair.a, "-o", pair.file("out.glb"), "--quiet", "--html", pair.file("build.html")}).exit_code == 0);
+  REQUIRE(run_program({"build", pair.a, "-o", pair.file("out.glb"), "--quiet", "--html", pair.file("build.html")})
+              .exit_code == 0);
   for (const char* name : {"page.html", "build.html"}) {
     std::string page = file_text(pair.folder / name);
     CHECK(count_of(page, "<script>alert") == 0);
@@ -230,7 +238,8 @@ TEST_CASE("pages and heatmaps have to have a place of their own") {
 
 TEST_CASE("a page of equal surfaces has no errors to show") {
   const Pair pair;
-  REQUIRE(run_program({"compare", pair.b, pair.b, "--html", pair.file("page.html"), "--heatmap", pair.file("x.ply")}).exit_code == 0);
+  REQUIRE(run_program({"compare", pair.b, pair.b, "--html", pair.file("page.html"), "--heatmap", pair.file("x.ply")})
+              .exit_code == 0);
   const Json data = data_of(file_text(pair.folder / "page.html"));
   CHECK(data["pictures"][1]["errors"]["max"].get<double>() < 1e-6);
 }

@@ -24,8 +24,8 @@ Result<void> check_paths(const BuildCommand& options, std::size_t level_count);
 /// report with `--profile files`, otherwise one.
 void list_files(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report);
 
-/// Writes the encoded files, the index, the page and the report, all of them or none; the last three where the options ask
-/// for them. Pre: as above. Errors: NotWritten.
+/// Writes the encoded files, the index, the page and the report, all of them or none; the last three where the options
+/// ask for them. Pre: as above. Errors: NotWritten.
 Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, const BuildReport& report,
                            const std::string& page);
 

@@ -13,8 +13,8 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// Returns the colour of an error, `share` of the scale's upper end, clamped to [0, 1]: from pale (no error) over yellow
-/// and red to a dark purple. Its lightness falls evenly, so that the order shows without hues, too.
+/// Returns the colour of an error, `share` of the scale's upper end, clamped to [0, 1]: from pale (no error) over
+/// yellow and red to a dark purple. Its lightness falls evenly, so that the order shows without hues, too.
 Colour error_colour(double share);
 
 /// Returns the same as linear light, as glTF stores colours: 0 to 65535.

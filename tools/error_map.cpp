@@ -70,8 +70,11 @@ ErrorSpread measure_spread(const Mesh& mesh, const SurfaceIndex& surface, double
   std::vector<double> errors = sampled_errors(mesh, surface);
   if (errors.empty()) errors.push_back(at_least);  // a mesh without area
   std::sort(errors.begin(), errors.end());
-  ErrorSpread spread{std::max(errors.back(), at_least), percentile(errors, 0.5), percentile(errors, 0.9),
-                     percentile(errors, 0.99), {}};
+  ErrorSpread spread{std::max(errors.back(), at_least),
+                     percentile(errors, 0.5),
+                     percentile(errors, 0.9),
+                     percentile(errors, 0.99),
+                     {}};
   const double share = 1 / static_cast<double>(errors.size());
   for (const double error : errors) spread.bins[bin_of(error, spread.maximum)] += share;
   return spread;

@@ -15,7 +15,7 @@ std::vector<float> vertex_errors(const Mesh& mesh, const SurfaceIndex& surface);
 struct ErrorSpread {
   static constexpr std::size_t kBinCount = 256;
 
-  double maximum = 0;                         ///< the largest distance found
+  double maximum = 0;                           ///< the largest distance found
   double median = 0, most = 0, nearly_all = 0;  ///< 50 %, 90 % and 99 % of the area lie no farther than these
   /// Shares of the area, finer towards 0: bin i begins at maximum · (i / kBinCount)².
   std::array<double, kBinCount> bins{};

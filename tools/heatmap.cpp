@@ -20,7 +20,8 @@ void append_u16(std::vector<std::byte>& out, std::uint16_t value) {
 
 /// glTF's colours are linear light, for which eight bits are too few; PLY's are shown as they are.
 Attribute colours(bool linear, const Mesh& mesh, std::span<const float> errors, double upper) {
-  Attribute out{"COLOR_0", linear ? ComponentType::UInt16 : ComponentType::UInt8, std::uint8_t(linear ? 4 : 3), true, {}};
+  Attribute out{
+      "COLOR_0", linear ? ComponentType::UInt16 : ComponentType::UInt8, std::uint8_t(linear ? 4 : 3), true, {}};
   for (const Index v : mesh.wedge_vertex) {
     const double share = upper > 0 ? errors[v] / upper : 0;
     if (linear) {

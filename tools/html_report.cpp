@@ -59,11 +59,16 @@ Box box_around(const std::vector<Mesh>& meshes) {
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
   }
   return out;
 }
@@ -72,19 +77,24 @@ std::string escaped(std::string_view text) {
 std::string script_json(const Json& json) {
   std::string out;
   for (const char c : json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace)) {
-    if (c == '<') out += "\\u003c";
-    else if (c == '>') out += "\\u003e";
-    else if (c == '&') out += "\\u0026";
-    else out += c;
+    if (c == '<')
+      out += "\\u003c";
+    else if (c == '>')
+      out += "\\u003e";
+    else if (c == '&')
+      out += "\\u0026";
+    else
+      out += c;
   }
   return out;
 }
 
-/// Collects what the page embeds: small things as JSON, geometry and errors as scripts of their own that are read later.
+/// Collects what the page embeds: small things as JSON, geometry and errors as scripts of their own that are read
+/// later.
 class PageData {
  public:
   std::string add_blob(std::span<const std::byte> bytes) {
-    const std::string id = "blob-" + std::to_string(blob_count_++);
+    std::string id = "blob-" + std::to_string(blob_count_++);
     blobs_ += "<script type=\"text/plain\" id=\"" + id + "\">" + base64(bytes) + "</script>\n";
     return id;
   }

@@ -19,8 +19,8 @@ struct HtmlReport {
   std::vector<Mesh> meshes;  ///< in world space; the original first, its errors are measured against each of the others
 };
 
-/// Returns one HTML page that needs nothing beside it. Large meshes are simplified first, for the picture only; the page
-/// says so. Errors: what simplification may fail with.
+/// Returns one HTML page that needs nothing beside it. Large meshes are simplified first, for the picture only; the
+/// page says so. Errors: what simplification may fail with.
 Result<std::string> html_page(const HtmlReport& report);
 
 }  // namespace lodestone::tool

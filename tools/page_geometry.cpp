@@ -1,6 +1,6 @@
-// Faces are visited one neighbour after the other, as in J. Rossignac, "Edgebreaker: connectivity compression for triangle
-// meshes", IEEE TVCG 5(1), 1999, but a vertex that was seen before is named by its number: simpler to undo, and any
-// triangles will do. New vertices are predicted by the parallelogram rule (C. Touma, C. Gotsman, "Triangle mesh
+// Faces are visited one neighbour after the other, as in J. Rossignac, "Edgebreaker: connectivity compression for
+// triangle meshes", IEEE TVCG 5(1), 1999, but a vertex that was seen before is named by its number: simpler to undo,
+// and any triangles will do. New vertices are predicted by the parallelogram rule (C. Touma, C. Gotsman, "Triangle mesh
 // compression", 1998). Entropy coding is left to deflate, for which every browser has a decoder.
 //
 // Before deflate, all numbers little-endian:
@@ -10,9 +10,9 @@
 //   six planes, a byte for each vertex: low bytes of x, y, z, high bytes of x, y, z, of the zigzagged difference
 //   between the coordinate and its prediction, modulo 65536
 //
-// A face that none of those before it leads to begins with three symbols and is predicted by the last new vertex (at first
-// 0, 0, 0). Its edges are then open; the one opened last is looked at first. Where the edge is not yet taken in the
-// opposite direction, one symbol tells the third vertex of the face there, and that face opens its other two edges.
+// A face that none of those before it leads to begins with three symbols and is predicted by the last new vertex (at
+// first 0, 0, 0). Its edges are then open; the one opened last is looked at first. Where the edge is not yet taken in
+// the opposite direction, one symbol tells the third vertex of the face there, and that face opens its other two edges.
 
 #include "page_geometry.h"
 
@@ -172,13 +172,14 @@ std::vector<std::byte> encode_errors(std::span<const float> errors, double maxim
 }
 
 std::string base64(std::span<const std::byte> bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     unsigned bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? std::to_integer<unsigned>(bytes[i + k]) : 0);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size() ? std::to_integer<unsigned>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }

@@ -18,7 +18,8 @@ struct PageGeometry {
 /// Encodes a mesh with 16 bits for each coordinate within `box`; the format is described in the .cpp.
 PageGeometry encode_geometry(const Mesh& mesh, const Box& box);
 
-/// Encodes one byte for each of `errors`, in the order of `vertices`: 255 · √(error / maximum), as differences, deflated.
+/// Encodes one byte for each of `errors`, in the order of `vertices`: 255 · √(error / maximum), as differences,
+/// deflated.
 std::vector<std::byte> encode_errors(std::span<const float> errors, double maximum, std::span<const Index> vertices);
 
 /// Returns the bytes as text that needs no escaping anywhere in HTML.

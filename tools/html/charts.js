@@ -20,7 +20,7 @@ function number(value, digits = 3) {
   return value.toLocaleString('en', { maximumFractionDigits: Math.min(places, 12) });
 }
 
-const percent = (share, digits = 3) => `${number(100 * share, digits)} %`;
+const percent = (share, digits = 3) => `${number(100 * share, digits)}\u00a0%`;
 
 /** Round numbers from 0 to `upper`, about `count`. */
 function ticks(upper, count) {

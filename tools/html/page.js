@@ -85,7 +85,10 @@ async function showPanes() {
     // The legend stands in the pane that has the colours, in the upper or left one where that is both.
     get('ramp').hidden = !errors || (state.left !== 0 && state.right !== 0);
     get('ramp').className = state.left === 0 ? '' : 'second';
-    if (errors) get('ramp-end').textContent = percent(upper * spread.max / diagonal);
+    if (errors) {
+      get('ramp-end').textContent = percent(upper * spread.max / diagonal);
+      get('ramp-units').textContent = `· ${number(upper * spread.max)}`;
+    }
     [state.left, state.right].forEach((level, pane) => viewer.show(pane, wanted[pane].mesh, level === 0 ? errors : null, upper));
     get('status').textContent = '';
     document.documentElement.dataset.ready = 'true';
