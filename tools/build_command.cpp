@@ -17,6 +17,8 @@ void BuildCommand::add_to(CLI::App& app) {
       ->type_name("FILE");
   app.add_option("-o,--output", output, "The .glb to write")->required()->type_name("OUT.glb");
   app.add_option("--report", report, "Write a JSON report")->type_name("R.json");
+  app.add_option("--html", html, "Write a page that shows the levels, their errors and where these are")
+      ->type_name("P.html");
   app.add_flag("--strict", strict, "Write nothing and exit with 5 where a target cannot be met");
   app.add_flag("-q,--quiet", quiet, "Print warnings and errors only");
   add_level_options(app);
@@ -28,6 +30,7 @@ void BuildCommand::add_to(CLI::App& app) {
       "  lodestone build bunny.obj -o bunny.glb\n"
       "  lodestone build bunny.obj -o bunny.glb --error 0.1%,0.5%,2% --report bunny.json\n"
       "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --no-draco\n"
+      "  lodestone build bunny.obj -o bunny.glb --html bunny.html\n"
       "  lodestone build town.gltf -o town.glb --profile files");
 }
 

@@ -21,6 +21,7 @@ struct BuildCommand {
   std::filesystem::path input;
   std::filesystem::path output;
   std::optional<std::filesystem::path> report;
+  std::optional<std::filesystem::path> html;
   std::string metric = "hybrid";
   std::string normalisation = "integral";
   std::string reference = "original";

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string_view>
 #include <system_error>
 
@@ -25,6 +24,20 @@ Result<void> check_path(const BuildCommand& options, const std::filesystem::path
     return fail(ErrorCode::InvalidArgument, "--report: " + quoted(*options.report) + " is the output");
   }
   return check_destination(path);
+}
+
+Result<void> check_page_path(const BuildCommand& options, std::size_t level_count) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.input, *options.html, ignored)) {
+    return fail(ErrorCode::InvalidArgument, "--html: " + quoted(*options.html) + " is the input");
+  }
+  std::vector<std::filesystem::path> others = output_paths(options, level_count);
+  if (options.report) others.push_back(*options.report);
+  for (const std::filesystem::path& other : others) {
+    if (options.html->lexically_normal() == other.lexically_normal())
+      return fail(ErrorCode::InvalidArgument, "--html: " + quoted(*options.html) + " is another output");
+  }
+  return check_destination(*options.html);
 }
 
 /// The index of `--profile files`: which file to load when.
@@ -56,26 +69,6 @@ Json index_json(const BuildReport& report) {
           {"levels", std::move(levels)}};
 }
 
-/// Files that appear together.
-class StagedFiles {
- public:
-  Result<void> add(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-    files_.push_back(std::make_unique<StagedFile>(path));
-    return files_.back()->write(bytes);
-  }
-  Result<void> add(const std::filesystem::path& path, const std::string& text) {
-    return add(path, std::as_bytes(std::span(text)));
-  }
-  Result<void> commit() {
-    for (const auto& file : files_)
-      if (Result<void> done = file->commit(); !done) return done;
-    return {};
-  }
-
- private:
-  std::vector<std::unique_ptr<StagedFile>> files_;
-};
-
 }  // namespace
 
 std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std::size_t level_count) {
@@ -96,19 +89,32 @@ Result<void> check_paths(const BuildCommand& options, std::size_t level_count) {
   }
   for (const std::filesystem::path& path : output_paths(options, level_count))
     if (Result<void> place = check_path(options, path); !place) return place;
+  if (options.html) {
+    if (Result<void> place = check_page_path(options, level_count); !place) return place;
+  }
   return options.report ? check_destination(*options.report) : Result<void>();
 }
 
-Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report) {
+void list_files(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report) {
+  const std::vector<std::filesystem::path> paths = output_paths(options, assets.size());
+  for (std::size_t i = 0; i < assets.size(); ++i) {
+    report.files.push_back({paths[i].string(), assets[i].layout.total_bytes});
+    report.output_bytes += assets[i].layout.total_bytes;
+  }
+}
+
+Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, const BuildReport& report,
+                           const std::string& page) {
   const std::vector<std::filesystem::path> paths = output_paths(options, assets.size());
   StagedFiles files;
   for (std::size_t i = 0; i < assets.size(); ++i) {
     if (Result<void> done = files.add(paths[i], assets[i].glb); !done) return done;
-    report.files.push_back({paths[i].string(), assets[i].layout.total_bytes});
-    report.output_bytes += assets[i].layout.total_bytes;
   }
   if (has_file_per_level(options)) {
     if (Result<void> done = files.add(paths.back(), json_text(index_json(report))); !done) return done;
+  }
+  if (options.html) {
+    if (Result<void> done = files.add(*options.html, page); !done) return done;
   }
   if (options.report) {
     if (Result<void> done = files.add(*options.report, json_text(report_json(report))); !done) return done;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <lodestone/core/result.h>
@@ -19,8 +20,13 @@ std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std
 /// Errors: InvalidArgument, NotWritten.
 Result<void> check_paths(const BuildCommand& options, std::size_t level_count);
 
-/// Writes the encoded files, the index and the report, all of them or none. Pre: one asset for each level of the
-/// report with `--profile files`, otherwise one. Errors: NotWritten.
-Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report);
+/// Enters the encoded files in the report, under the paths that they will have. Pre: one asset for each level of the
+/// report with `--profile files`, otherwise one.
+void list_files(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report);
+
+/// Writes the encoded files, the index, the page and the report, all of them or none; the last three where the options
+/// ask for them. Pre: as above. Errors: NotWritten.
+Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, const BuildReport& report,
+                           const std::string& page);
 
 }  // namespace lodestone::tool

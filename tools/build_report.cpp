@@ -1,7 +1,6 @@
 #include "build_report.h"
 
 #include <cstdio>
-#include <numbers>
 
 #include "process_memory.h"
 #include "text_table.h"
@@ -52,21 +51,6 @@ Json stream_json(const BuildReport::Stream& stream) {
             {"link", stream.blocked.link},
             {"ring", stream.blocked.ring},
             {"error", stream.blocked.error}}}};
-}
-
-/// Angles in degrees, as elsewhere in the report.
-Json attribute_json(const AttributeDeviation& deviation) {
-  const double unit = deviation.name == "NORMAL" ? 180 / std::numbers::pi : 1;
-  return {{"name", deviation.name},
-          {"mean", deviation.mean * unit},
-          {"rms", deviation.rms * unit},
-          {"max", deviation.maximum * unit}};
-}
-
-Json attributes_json(const std::vector<AttributeDeviation>& deviations) {
-  Json json = Json::array();
-  for (const AttributeDeviation& deviation : deviations) json.push_back(attribute_json(deviation));
-  return json;
 }
 
 Json part_json(const BuildReport::MeshPart& part) {

@@ -12,6 +12,7 @@
 #include <lodestone/lod/placement.h>
 #include <lodestone/lod/simplify.h>
 
+#include "build_html.h"
 #include "build_options.h"
 #include "build_output.h"
 #include "build_report.h"
@@ -120,6 +121,8 @@ class BuildRun {
   Result<void> encode_streams();
   Result<std::vector<EncodedAsset>> encode() const;
   Result<void> write();
+  Result<std::string> page() const;
+  std::vector<ScenePart> parts() const;
   void report_layouts(std::span<const EncodedAsset> assets);
 
   const BuildCommand& options_;
@@ -280,17 +283,22 @@ void BuildRun::make_levels() {
   report_.timings_ms.levels = stopwatch_.lap_ms();
 }
 
-/// Finds each mesh's positions: the whole scene, then what answers the targets.
-std::vector<SceneChoice> BuildRun::choose_levels() const {
+std::vector<ScenePart> BuildRun::parts() const {
   std::vector<ScenePart> parts;
-  std::vector<SceneChoice> choices{{{}, {}, true, "whole"}};
   for (std::size_t i = 0; i < simplified_.size(); ++i) {
     const SceneMesh& mesh = scene_->meshes()[i];
-    const ProgressiveMesh& progressive = simplified_[i].mesh;
-    parts.push_back({&progressive, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
+    parts.push_back({&simplified_[i].mesh, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
                      settings_.importance_of(mesh), world_charges(simplified_[i], mesh.scale)});
-    choices[0].positions.push_back(static_cast<Index>(progressive.record_count()));
   }
+  return parts;
+}
+
+/// Finds each mesh's positions: the whole scene, then what answers the targets.
+std::vector<SceneChoice> BuildRun::choose_levels() const {
+  const std::vector<ScenePart> parts = this->parts();
+  std::vector<SceneChoice> choices{{{}, {}, true, "whole"}};
+  for (const SimplifyResult& result : simplified_)
+    choices[0].positions.push_back(static_cast<Index>(result.mesh.record_count()));
   for (const LevelTarget& target : targets_)
     choices.push_back(choose_positions(parts, target, scope(), scene_->box().diagonal()));
   return choices;
@@ -408,10 +416,19 @@ Result<void> BuildRun::write() {
   const Result<std::vector<EncodedAsset>> assets = encode();
   if (!assets) return tl::unexpected(assets.error());
   report_layouts(*assets);
+  list_files(options_, *assets, report_);
   report_.timings_ms.write = stopwatch_.lap_ms();
-  const Result<void> done = write_outputs(options_, *assets, report_);
+  const Result<std::string> html = page();
+  if (!html) return tl::unexpected(html.error());
+  const Result<void> done = write_outputs(options_, *assets, report_, *html);
   progress_.clear();
   return done;
+}
+
+/// Returns the page of --html; nothing without it.
+Result<std::string> BuildRun::page() const {
+  if (!options_.html) return std::string();
+  return build_page(report_, *scene_, levels_, wants_streams() ? parts() : std::vector<ScenePart>());
 }
 
 void BuildRun::report_layouts(std::span<const EncodedAsset> assets) {

@@ -1,16 +1,24 @@
 #include "compare_command.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <numbers>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/deviation.h>
 
+#include "error_map.h"
+#include "heatmap.h"
+#include "html_report.h"
 #include "json_text.h"
 #include "messages.h"
 #include "progress_bar.h"
+#include "staged_file.h"
 #include "text_table.h"
 
 namespace lodestone::tool {
@@ -21,6 +29,7 @@ constexpr int kCompareSchemaVersion = 1;
 struct Surface {
   std::string path;
   Mesh mesh;
+  std::uintmax_t bytes = 0;  ///< of the file
 };
 
 Result<Surface> read_surface(const std::filesystem::path& path) {
@@ -29,7 +38,9 @@ Result<Surface> read_surface(const std::filesystem::path& path) {
   if (file->mesh.face_count() == 0) {
     return fail(ErrorCode::Malformed, quoted(path) + ": no triangles to compare");
   }
-  return Surface{path.string(), std::move(file->mesh)};
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  return Surface{path.string(), std::move(file->mesh), unknown ? 0 : bytes};
 }
 
 Json surface_json(const Surface& surface) {
@@ -62,6 +73,56 @@ std::vector<std::string> row_of(const char* name, const OneSidedDeviation& way, 
           percent_text(way.rms, diagonal)};
 }
 
+/// The page shows the same numbers, the bytes of the files, and how far the attributes agree.
+Result<std::string> comparison_page(const Surface& a, const Surface& b, const Json& comparison, double diagonal) {
+  HtmlReport page;
+  const auto name = [](const Surface& surface) { return std::filesystem::path(surface.path).filename().string(); };
+  page.title = name(b) + " against " + name(a);
+  page.diagonal = diagonal;
+  page.numbers = {{"kind", "compare"},
+                  {"comparison", comparison},
+                  {"bytes", {a.bytes, b.bytes}},
+                  {"attributes", attributes_json(measure_attributes(a.mesh, b.mesh))}};
+  page.meshes = {a.mesh, b.mesh};
+  return html_page(page);
+}
+
+struct Heatmap {
+  std::vector<std::byte> bytes;
+  double upper = 0;  ///< what the darkest colour stands for
+};
+
+/// Colours end where 99 % of the area do: with a few peaks at their end, all the rest would be pale.
+Result<Heatmap> make_heatmap(const std::filesystem::path& path, const Surface& a, const Surface& b) {
+  const SurfaceIndex surface(b.mesh);
+  const std::vector<float> errors = vertex_errors(a.mesh, surface);
+  const double largest = *std::max_element(errors.begin(), errors.end());
+  const double upper = measure_spread(a.mesh, surface, largest).nearly_all;
+  Result<std::vector<std::byte>> bytes = encode_heatmap(path, a.mesh, errors, upper > 0 ? upper : largest);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return Heatmap{std::move(*bytes), upper > 0 ? upper : largest};
+}
+
+Result<void> check_output(const char* option, const std::filesystem::path& path, const CompareCommand& options) {
+  std::error_code ignored;
+  for (const std::filesystem::path& input : {options.first, options.second}) {
+    if (std::filesystem::equivalent(input, path, ignored))
+      return fail(ErrorCode::InvalidArgument, std::string(option) + ": " + quoted(path) + " is an input");
+  }
+  return check_destination(path);
+}
+
+Result<void> check_outputs(const CompareCommand& options) {
+  if (options.heatmap) {
+    if (Result<void> done = check_heatmap_path(*options.heatmap); !done) return done;
+    if (Result<void> done = check_output("--heatmap", *options.heatmap, options); !done) return done;
+  }
+  if (!options.html) return {};
+  if (options.heatmap && options.heatmap->lexically_normal() == options.html->lexically_normal())
+    return fail(ErrorCode::InvalidArgument, "--html: " + quoted(*options.html) + " is the heatmap");
+  return check_output("--html", *options.html, options);
+}
+
 void print_comparison(const Surface& a, const Surface& b, const Deviation& deviation, double diagonal) {
   std::printf("A: %s, %zu faces, diagonal %s\n", a.path.c_str(), a.mesh.face_count(), number_text(diagonal).c_str());
   std::printf("B: %s, %zu faces\n", b.path.c_str(), b.mesh.face_count());
@@ -79,10 +140,17 @@ void CompareCommand::add_to(CLI::App& app) {
   app.add_option("A", first, "Mesh file; percentages are of its bounding-box diagonal")->required()->type_name("FILE");
   app.add_option("B", second, "Mesh file")->required()->type_name("FILE");
   app.add_flag("--json", json, "Print JSON");
-  app.footer("Example:\n  lodestone compare bunny.obj bunny-855.obj");
+  app.add_option("--html", html, "Write a page that shows both surfaces, the errors and where these are")
+      ->type_name("P.html");
+  app.add_option("--heatmap", heatmap, "Write A coloured by its distance from B, as .ply or .glb")->type_name("X");
+  app.footer(
+      "Examples:\n"
+      "  lodestone compare bunny.obj bunny-855.obj\n"
+      "  lodestone compare bunny.obj bunny-855.obj --html bunny.html --heatmap bunny-errors.ply");
 }
 
 Result<Outcome> CompareCommand::run() const {
+  if (Result<void> paths = check_outputs(*this); !paths) return tl::unexpected(paths.error());
   ProgressBar progress(true);
   progress.start("reading");
   const Result<Surface> a = read_surface(first);
@@ -91,13 +159,34 @@ Result<Outcome> CompareCommand::run() const {
   if (!b) return tl::unexpected(b.error());
   progress.start("measuring");
   const Deviation deviation = measure_deviation(a->mesh, b->mesh);
-  progress.clear();
   const double diagonal = bounding_box(a->mesh).diagonal();
-  if (json) {
-    std::fputs(json_text(comparison_json(*a, *b, deviation, diagonal)).c_str(), stdout);
-  } else {
-    print_comparison(*a, *b, deviation, diagonal);
+  const Json comparison = comparison_json(*a, *b, deviation, diagonal);
+
+  StagedFiles files;
+  if (html) {
+    progress.start("drawing");
+    const Result<std::string> page = comparison_page(*a, *b, comparison, diagonal);
+    if (!page) return tl::unexpected(page.error());
+    if (Result<void> done = files.add(*html, *page); !done) return tl::unexpected(done.error());
   }
+  double upper = 0;
+  if (heatmap) {
+    const Result<Heatmap> colours = make_heatmap(*heatmap, *a, *b);
+    if (!colours) return tl::unexpected(colours.error());
+    upper = colours->upper;
+    if (Result<void> done = files.add(*heatmap, colours->bytes); !done) return tl::unexpected(done.error());
+  }
+  progress.clear();
+  if (Result<void> done = files.commit(); !done) return tl::unexpected(done.error());
+
+  if (json) {
+    std::fputs(json_text(comparison).c_str(), stdout);
+    return Outcome::Done;
+  }
+  print_comparison(*a, *b, deviation, diagonal);
+  if (heatmap)
+    std::printf("%s: from pale, no error, to dark, %s (%s of the diagonal) and more\n", heatmap->string().c_str(),
+                number_text(upper).c_str(), percent_text(upper, diagonal).c_str());
   return Outcome::Done;
 }
 

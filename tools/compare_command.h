@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include <lodestone/core/result.h>
 
@@ -17,6 +18,8 @@ struct CompareCommand {
   std::filesystem::path first;
   std::filesystem::path second;
   bool json = false;
+  std::optional<std::filesystem::path> html;
+  std::optional<std::filesystem::path> heatmap;
 
   void add_to(CLI::App& app);
   Result<Outcome> run() const;

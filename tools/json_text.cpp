@@ -30,6 +30,24 @@ Json deviation_json(const Deviation& deviation) {
           {"mean_normal_angle_degrees", deviation.mean_normal_angle * 180 / std::numbers::pi}};
 }
 
+namespace {
+
+Json attribute_json(const AttributeDeviation& deviation) {
+  const double unit = deviation.name == "NORMAL" ? 180 / std::numbers::pi : 1;
+  return {{"name", deviation.name},
+          {"mean", deviation.mean * unit},
+          {"rms", deviation.rms * unit},
+          {"max", deviation.maximum * unit}};
+}
+
+}  // namespace
+
+Json attributes_json(const std::vector<AttributeDeviation>& deviations) {
+  Json json = Json::array();
+  for (const AttributeDeviation& deviation : deviations) json.push_back(attribute_json(deviation));
+  return json;
+}
+
 Json box_json(const Box& box) {
   return {{"low", {box.low.x, box.low.y, box.low.z}},
           {"high", {box.high.x, box.high.y, box.high.z}},

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <lodestone/core/assemble.h>
 #include <lodestone/core/mesh.h>
+#include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/deviation.h>
 
 namespace lodestone::tool {
@@ -20,6 +22,8 @@ Json assembly_json(const AssemblyReport& report);
 Json one_sided_json(const OneSidedDeviation& deviation);
 /// Lengths in mesh units; the angle in degrees.
 Json deviation_json(const Deviation& deviation);
+/// Normals in degrees.
+Json attributes_json(const std::vector<AttributeDeviation>& deviations);
 Json box_json(const Box& box);
 
 }  // namespace lodestone::tool

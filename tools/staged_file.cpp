@@ -50,6 +50,21 @@ Result<void> StagedFile::commit() {
   return {};
 }
 
+Result<void> StagedFiles::add(const fs::path& path, std::span<const std::byte> bytes) {
+  files_.push_back(std::make_unique<StagedFile>(path));
+  return files_.back()->write(bytes);
+}
+
+Result<void> StagedFiles::add(const fs::path& path, const std::string& text) {
+  return add(path, std::as_bytes(std::span(text)));
+}
+
+Result<void> StagedFiles::commit() {
+  for (const auto& file : files_)
+    if (Result<void> done = file->commit(); !done) return done;
+  return {};
+}
+
 Result<void> check_destination(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) {

@@ -2,7 +2,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include <lodestone/core/result.h>
 
@@ -28,6 +31,19 @@ class StagedFile {
  private:
   std::filesystem::path destination_;
   std::filesystem::path staged_;
+};
+
+/// Files that appear together, once all of them are written.
+class StagedFiles {
+ public:
+  /// Errors: NotWritten.
+  Result<void> add(const std::filesystem::path& path, std::span<const std::byte> bytes);
+  Result<void> add(const std::filesystem::path& path, const std::string& text);
+  /// Errors: NotWritten.
+  Result<void> commit();
+
+ private:
+  std::vector<std::unique_ptr<StagedFile>> files_;
 };
 
 /// Checks, before the long work starts, that a file can be put at `path`.

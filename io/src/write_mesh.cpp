@@ -8,15 +8,18 @@
 
 namespace lodestone {
 
-Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
+Result<std::vector<std::byte>> write_mesh_bytes(const Mesh& mesh, const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  if (extension == ".obj" || extension == ".OBJ") return write_file(path, detail::to_obj(mesh));
-  if (extension == ".ply" || extension == ".PLY") return write_file(path, detail::to_ply(mesh));
-  if (extension != ".glb" && extension != ".GLB")
-    return fail(ErrorCode::Unsupported, detail::text("cannot write '", path, "': the extension '", extension,
-                                                     "' is none of .obj, .ply and .glb"));
-  LODESTONE_TRY(const std::vector<std::byte> glb, detail::to_glb(mesh, path.stem().string()));
-  return write_file(path, glb);
+  if (extension == ".obj" || extension == ".OBJ") return detail::to_obj(mesh);
+  if (extension == ".ply" || extension == ".PLY") return detail::to_ply(mesh);
+  if (extension == ".glb" || extension == ".GLB") return detail::to_glb(mesh, path.stem().string());
+  return fail(ErrorCode::Unsupported, detail::text("cannot write '", path, "': the extension '", extension,
+                                                   "' is none of .obj, .ply and .glb"));
+}
+
+Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh) {
+  LODESTONE_TRY(const std::vector<std::byte> bytes, write_mesh_bytes(mesh, path));
+  return write_file(path, bytes);
 }
 
 }  // namespace lodestone

@@ -14,4 +14,7 @@ namespace lodestone {
 /// them. Errors: Unsupported for another extension, NotWritten.
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 
+/// Encodes a mesh as `write_mesh` would write it to `path`, and writes nothing. Errors: Unsupported.
+Result<std::vector<std::byte>> write_mesh_bytes(const Mesh& mesh, const std::filesystem::path& path);
+
 }  // namespace lodestone
