@@ -30,6 +30,21 @@ export function trianglesOfAccessors(gltf, node) {
   return triangles.reduce((sum, primitive) => sum + gltf.accessors[primitive.indices].count / 3, 0);
 }
 
+/** Returns the nodes that a file's scene shows. */
+function shownNodes(gltf) {
+  const waiting = [...(gltf.scenes[gltf.scene ?? 0].nodes ?? [])];
+  for (let i = 0; i < waiting.length; ++i) waiting.push(...(gltf.nodes[waiting[i]].children ?? []));
+  return waiting;
+}
+
+/** Returns the triangles of the whole scene at each level, finest first; a node without MSFT_lod counts in all. */
+export function trianglesOfScene(gltf) {
+  const chains = shownNodes(gltf).map((node) => [node, ...(gltf.nodes[node].extensions?.MSFT_lod?.ids ?? [])]);
+  const levels = Math.max(...chains.map((chain) => chain.length));
+  return Array.from({ length: levels }, (_, level) => chains.reduce((sum, chain) =>
+    sum + trianglesOfAccessors(gltf, chain[Math.min(level, chain.length - 1)]), 0));
+}
+
 /** Returns what the file says of its levels, finest first: node, triangles by its accessors, extras; and if it uses Draco. */
 export async function readLevels(path) {
   const gltf = parseGlb(await readFile(path));
