@@ -2,12 +2,35 @@
 import { readFile } from 'node:fs/promises';
 
 const JSON_CHUNK = 0x4e4f534a;
+const BINARY_CHUNK = 0x004e4942;
 
 /** Returns the JSON of a .glb. */
 export function parseGlb(bytes) {
   if (bytes.toString('latin1', 0, 4) !== 'glTF') throw new Error('not a .glb');
   if (bytes.readUInt32LE(16) !== JSON_CHUNK) throw new Error('the first chunk is not JSON');
   return JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
+}
+
+/** Returns the JSON of a .glb and a copy of its binary chunk. */
+export function splitGlb(bytes) {
+  const json = bytes.readUInt32LE(12);
+  return { gltf: parseGlb(bytes), bin: Buffer.from(bytes.subarray(28 + json)) };
+}
+
+function chunk(type, content, filler) {
+  const padding = Buffer.alloc((4 - (content.length % 4)) % 4, filler);
+  const head = Buffer.alloc(8);
+  head.writeUInt32LE(content.length + padding.length, 0);
+  head.writeUInt32LE(type, 4);
+  return Buffer.concat([head, content, padding]);
+}
+
+/** Returns a .glb of the two. */
+export function joinGlb(gltf, bin) {
+  const chunks = Buffer.concat([chunk(JSON_CHUNK, Buffer.from(JSON.stringify(gltf)), ' '), chunk(BINARY_CHUNK, bin, 0)]);
+  const head = Buffer.from('glTF\x02\0\0\0\0\0\0\0', 'latin1');
+  head.writeUInt32LE(head.length + chunks.length, 8);
+  return Buffer.concat([head, chunks]);
 }
 
 /** Returns the nodes of every MSFT_lod, each list finest first: the node that has it, then its ids. */

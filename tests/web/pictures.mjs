@@ -1,0 +1,126 @@
+// Takes pictures of every level beside its input, at the distance where the level is used, and measures their likeness.
+// The same check must fail on levels with cracks and with scrambled texture coordinates.
+//
+//   node pictures.mjs [--models FOLDER] --output FOLDER [NAME …]     of the assets that assets.mjs has built there
+import assert from 'node:assert/strict';
+import { readFile, writeFile } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import { existsSync, readdirSync } from 'node:fs';
+import { planAssets } from './assets.mjs';
+import { openCracks, scrambleTextures } from './damage.mjs';
+import { lodChains, parseGlb } from './glb.mjs';
+import { Log, openSite, readOptions, requireClients, skip } from './suite.mjs';
+
+const subjects = ['suzi', 'spot_triangulated', 'FlightHelmet', 'SheenCloth', 'Lantern_nobasecolor', 'cakeBirthday',
+  'RobotExpressive', 'Knight'];
+
+// A level is used from where its deviation is a pixel. A gap of two is one that nobody should have to look at.
+const pixelsOfDeviation = 1;
+const pixelsOfGap = 2;
+
+const bound = 0.9;
+
+/** Returns the largest deviation of each level in the scene's units, finest first. */
+function deviationsOf(gltf) {
+  const chains = lodChains(gltf);
+  const levels = Math.max(...chains.map((chain) => chain.length));
+  return Array.from({ length: levels }, (_, level) => Math.max(...chains.map((chain) => {
+    const { maximum_deviation: deviation = 0, world_scale: scale } = gltf.nodes[chain[Math.min(level, chain.length - 1)]].extras.lodestone;
+    return deviation * scale;
+  })));
+}
+
+function describe(site, asset) {
+  const pictures = readdirSync(dirname(asset.input)).filter((name) => name.endsWith('.png'));
+  const dress = asset.kind === 'mesh' && asset.input.endsWith('.obj')
+    ? { bare: true, texture: pictures[0] && site.url(join(dirname(asset.input), pictures[0])) } : {};
+  return {
+    input: { url: site.url(asset.input), draco: true, ...dress },
+    result: { url: site.url(asset.path), draco: asset.draco, ...dress },
+  };
+}
+
+/** Returns the similarity of every level from `first` on; with a name, the levels go into a sheet of that name. */
+async function compareLevels(studio, result, pixels, first, name) {
+  await studio.page.ask((file) => window.openAsset(file), result);
+  const values = [];
+  for (let level = first; level < pixels.length; ++level) {
+    values.push(await studio.page.ask((job) => window.compareLevel(...job), [level, pixels[level], name && `${name} level ${level}`]));
+  }
+  if (name) {
+    const sheet = await studio.page.ask(() => window.takeSheet());
+    await writeFile(join(studio.output, `pictures-${name}.png`), Buffer.from(sheet, 'base64'));
+  }
+  return values;
+}
+
+// Smaller than this an object is little more than the windows that pictures are compared by.
+const smallestJudged = 48; // pixels
+
+const judged = (results) => results.filter(({ width }) => width >= smallestJudged);
+
+function looksAlike(results) {
+  for (const { value } of judged(results)) assert.ok(value >= bound, `similarity ${text(results)}, below ${bound}`);
+}
+
+/** Levels too small to be judged stand in brackets. */
+function text(results) {
+  return results.map(({ value, width }) => (width >= smallestJudged ? value.toFixed(4) : `(${value.toFixed(4)})`)).join(' ');
+}
+
+async function writeDamaged(studio, site, name, bytes) {
+  const path = join(studio.output, `${name}.glb`);
+  await writeFile(path, bytes);
+  return site.url(path);
+}
+
+/** The check must see the damage at every level. */
+async function isSeen(studio, result, pixels, name) {
+  const values = await compareLevels(studio, result, pixels, 1, name);
+  judged(values).forEach((value) => assert.throws(() => looksAlike([value]), undefined, `similarity ${text(values)} passes`));
+  return text(values);
+}
+
+async function checkAsset(log, site, studio, asset, plain) {
+  const { input, result } = describe(site, asset);
+  const bytes = await readFile(plain.path);
+  const full = await studio.page.ask((file) => window.openOriginal(file), input);
+  const pixels = deviationsOf(parseGlb(bytes)).map((deviation) => Math.max(full, deviation / pixelsOfDeviation));
+  const cracked = openCracks(bytes, pixels.map((pixel) => pixelsOfGap * pixel));
+  const scrambled = scrambleTextures(bytes);
+  const damaged = async (name, content) => ({ ...result, draco: false, url: await writeDamaged(studio, site, name, content) });
+  await log.run(asset.name, {
+    'like the input': async () => {
+      const values = await compareLevels(studio, result, pixels, 0, asset.name);
+      looksAlike(values);
+      return text(values);
+    },
+    'cracks are seen': async () => isSeen(studio, await damaged(`${asset.name}-cracked`, cracked), pixels, `${asset.name}-cracked`),
+    ...(scrambled && {
+      'scrambled textures are seen': async () =>
+        isSeen(studio, await damaged(`${asset.name}-scrambled`, scrambled), pixels, `${asset.name}-scrambled`),
+    }),
+  });
+}
+
+async function main() {
+  requireClients();
+  const { openPage } = await import('./browser.mjs');
+  const options = readOptions();
+  const site = await openSite(options);
+  const studio = { page: await openPage(site.browser, `${site.address}/pages/pictures.html`), output: options.output };
+  const log = new Log();
+  const assets = planAssets(options);
+  for (const name of options.files.length > 0 ? options.files : subjects) {
+    const asset = assets.find((one) => one.name === name);
+    if (!asset || !existsSync(asset.path)) {
+      skip(name);
+      continue;
+    }
+    await checkAsset(log, site, studio, asset, assets.find(({ stem, draco }) => stem === name && !draco));
+  }
+  await site.close();
+  log.close();
+}
+
+await main();
