@@ -3,11 +3,12 @@
 //   node assets.mjs --program PROGRAM [--models FOLDER] --output FOLDER
 import { execFile } from 'node:child_process';
 import { existsSync, readdirSync } from 'node:fs';
-import { mkdir } from 'node:fs/promises';
+import { mkdir, writeFile } from 'node:fs/promises';
 import { availableParallelism } from 'node:os';
-import { basename, extname, join } from 'node:path';
+import { basename, dirname, extname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { promisify } from 'node:util';
+import { makeTube } from './made.mjs';
 import { Log, readOptions, repository } from './suite.mjs';
 
 const demoModel = join(repository, 'demo', 'suzi.glb');
@@ -28,12 +29,14 @@ function sceneModels(models) {
       .map((name) => join(folder, name)));
 }
 
+const madeModel = (output) => join(output, 'made', 'tube.glb');
+
 /** Returns all assets: what goes in, what comes out, how; `kind` is `mesh` for one bare mesh, else `scene`. */
 export function planAssets({ models, output }) {
   const bare = [demoModel, ...meshes.map((name) => join(models, name)).filter(existsSync)];
   return [
     ...bare.flatMap((input) => variants(input, 'mesh', output, [[], [noDraco]])),
-    ...sceneModels(models).flatMap((input) => variants(input, 'scene', output, [[], [noDraco]])),
+    ...[madeModel(output), ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], [noDraco]])),
   ];
 }
 
@@ -45,7 +48,8 @@ async function build(program, { input, path, flags }) {
 
 async function main() {
   const options = readOptions();
-  await mkdir(options.output, { recursive: true });
+  await mkdir(dirname(madeModel(options.output)), { recursive: true });
+  await writeFile(madeModel(options.output), makeTube());
   const waiting = planAssets(options);
   const log = new Log();
   const work = async () => {

@@ -52,7 +52,7 @@ export function scrambleTextures(bytes) {
       values.set(j, kept);
     }
   }
-  return accessors.size === 0 ? undefined : joinGlb(gltf, bin);
+  return joinGlb(gltf, bin);
 }
 
 /** Appends an accessor like another, its positions moved; returns its index. */

@@ -11,14 +11,15 @@ import { openCracks, scrambleTextures } from './damage.mjs';
 import { lodChains, parseGlb } from './glb.mjs';
 import { Log, openSite, readOptions, requireClients, skip } from './suite.mjs';
 
-const subjects = ['suzi', 'spot_triangulated', 'FlightHelmet', 'SheenCloth', 'Lantern_nobasecolor', 'cakeBirthday',
+const subjects = ['suzi', 'tube', 'spot_triangulated', 'FlightHelmet', 'SheenCloth', 'Lantern_nobasecolor', 'cakeBirthday',
   'RobotExpressive', 'Knight'];
 
 // A level is used from where its deviation is a pixel. A gap of two is one that nobody should have to look at.
 const pixelsOfDeviation = 1;
 const pixelsOfGap = 2;
 
-const bound = 0.9;
+// Levels as they are: 0.89 and more, most above 0.95. Cracked ones: 0.78 and less, scrambled ones 0.69 and less.
+const bound = 0.85;
 
 /** Returns the largest deviation of each level in the scene's units, finest first. */
 function deviationsOf(gltf) {
@@ -75,8 +76,8 @@ async function writeDamaged(studio, site, name, bytes) {
 }
 
 /** The check must see the damage at every level. */
-async function isSeen(studio, result, pixels, name) {
-  const values = await compareLevels(studio, result, pixels, 1, name);
+async function isSeen(studio, result, pixels) {
+  const values = await compareLevels(studio, result, pixels, 1);
   judged(values).forEach((value) => assert.throws(() => looksAlike([value]), undefined, `similarity ${text(values)} passes`));
   return text(values);
 }
@@ -85,9 +86,9 @@ async function checkAsset(log, site, studio, asset, plain) {
   const { input, result } = describe(site, asset);
   const bytes = await readFile(plain.path);
   const full = await studio.page.ask((file) => window.openOriginal(file), input);
-  const pixels = deviationsOf(parseGlb(bytes)).map((deviation) => Math.max(full, deviation / pixelsOfDeviation));
-  const cracked = openCracks(bytes, pixels.map((pixel) => pixelsOfGap * pixel));
-  const scrambled = scrambleTextures(bytes);
+  const gltf = parseGlb(bytes);
+  const pixels = deviationsOf(gltf).map((deviation) => Math.max(full, deviation / pixelsOfDeviation));
+  const coloured = gltf.materials?.some((material) => material.pbrMetallicRoughness?.baseColorTexture) || result.texture;
   const damaged = async (name, content) => ({ ...result, draco: false, url: await writeDamaged(studio, site, name, content) });
   await log.run(asset.name, {
     'like the input': async () => {
@@ -95,10 +96,10 @@ async function checkAsset(log, site, studio, asset, plain) {
       looksAlike(values);
       return text(values);
     },
-    'cracks are seen': async () => isSeen(studio, await damaged(`${asset.name}-cracked`, cracked), pixels, `${asset.name}-cracked`),
-    ...(scrambled && {
+    'cracks are seen': async () => isSeen(studio, await damaged(`${asset.name}-cracked`, openCracks(bytes, pixels.map((pixel) => pixelsOfGap * pixel))), pixels),
+    ...(coloured && {
       'scrambled textures are seen': async () =>
-        isSeen(studio, await damaged(`${asset.name}-scrambled`, scrambled), pixels, `${asset.name}-scrambled`),
+        isSeen(studio, await damaged(`${asset.name}-scrambled`, scrambleTextures(bytes)), pixels),
     }),
   });
 }

@@ -32,6 +32,7 @@ function checksOfScene(checks, viewers, pages, asset) {
     'extras': () => checks.chainsAgree(asset.path),
     'three.js': () => viewers.drawsInThree(pages, asset),
     'Babylon.js': () => viewers.loadsInBabylon(pages, asset),
+    'Babylon.js by byte ranges': () => viewers.streamsInBabylon(pages, asset),
   };
 }
 

@@ -12,22 +12,29 @@ export async function openViewers(site) {
   };
 }
 
-async function expectedTriangles(asset) {
-  return trianglesOfScene(parseGlb(await readFile(asset.path)));
-}
+const readGltf = async (asset) => parseGlb(await readFile(asset.path));
 
 /** three.js draws each level of all nodes together. */
 export async function drawsInThree(viewers, asset) {
   const drawn = await viewers.three.ask(([url, draco]) => window.drawLevels(url, draco), [asset.url, asset.draco]);
-  assert.deepEqual(drawn, await expectedTriangles(asset));
+  assert.deepEqual(drawn, trianglesOfScene(await readGltf(asset)));
   return drawn.join(' ');
 }
 
-/** Babylon.js goes from the coarsest level to the finest by itself; read by ranges, it shows each before it asks for the next. */
+/** Babylon.js, told to stop there, shows each level of all nodes together. */
 export async function loadsInBabylon(viewers, asset) {
-  const { shown, last } = await viewers.babylon.ask((url) => window.loadProgressively(url, true), asset.url);
-  const expected = await expectedTriangles(asset);
-  assert.deepEqual(shown, [...expected].reverse());
-  assert.equal(last, expected[0]);
+  const expected = trianglesOfScene(await readGltf(asset)).reverse();
+  const shown = await viewers.babylon.ask((choice) => window.loadEachLevel(...choice), [asset.url, expected.length]);
+  assert.deepEqual(shown, expected);
+  return shown.join(' ');
+}
+
+/** Read by byte ranges, Babylon.js shows level after level. */
+export async function streamsInBabylon(viewers, asset) {
+  const gltf = await readGltf(asset);
+  // Babylon.js 9.28 adds animations to the first range after it has asked for it, and then misses their bytes.
+  if (gltf.animations) return 'left out: it has animations';
+  const { shown } = await viewers.babylon.ask((url) => window.loadProgressively(url, true), asset.url);
+  assert.deepEqual(shown, trianglesOfScene(gltf).reverse());
   return shown.join(' ');
 }
