@@ -38,7 +38,7 @@ std::string glb(std::string json, std::string binary) {
 std::string square_binary() {
   std::string out;
   for (const float f : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 1.F, 1.F, 0.F, 0.F, 1.F, 0.F}) put(out, f);
-  for (const std::uint16_t i : {0, 1, 2, 0, 2, 3}) put(out, i);
+  for (const int i : {0, 1, 2, 0, 2, 3}) put(out, static_cast<std::uint16_t>(i));
   return out;
 }
 
@@ -226,9 +226,10 @@ TEST_CASE("gltf: strips and fans become triangles of one winding, points and lin
 TEST_CASE("gltf: quantised positions are decoded") {
   Square square;
   square.binary.clear();
-  for (const std::int16_t v : {0, 0, 0, 0, 32767, 0, 0, 0, 32767, -32768, 0, 0, 0, -32767, 0, 0}) put(square.binary, v);
+  for (const int v : {0, 0, 0, 0, 32767, 0, 0, 0, 32767, -32768, 0, 0, 0, -32767, 0, 0})
+    put(square.binary, static_cast<std::int16_t>(v));
   square.binary.resize(48);
-  for (const std::uint16_t i : {0, 1, 2, 0, 2, 3}) put(square.binary, i);
+  for (const int i : {0, 1, 2, 0, 2, 3}) put(square.binary, static_cast<std::uint16_t>(i));
   square.positions = R"("bufferView":0,"componentType":5122,"normalized":true,"count":4,"type":"VEC3")";
   square.views = R"({"buffer":0,"byteLength":48,"byteStride":8},{"buffer":0,"byteOffset":48,"byteLength":12})";
   square.more = R"(,"extensionsRequired":["KHR_mesh_quantization"])";

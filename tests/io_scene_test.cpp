@@ -463,7 +463,7 @@ TEST_CASE("morph targets, sparse ones too, stay with their vertices") {
       std::memcpy(positions.data(), bytes.data(), bytes.size());
       CHECK(morphed_corners(out, out.json["meshes"][0]["primitives"][0], positions) == expected);
     }
-    CHECK(out.json["meshes"][0]["primitives"][0]["extensions"].contains("KHR_draco_mesh_compression") == draco);
+    CHECK(out.json["meshes"][0]["primitives"][0].contains("extensions") == draco);
     CHECK(out.json["meshes"][1]["weights"] == maker.json["meshes"][0]["weights"]);
     CHECK((*lod_node(out, "node_LOD1"))["weights"] == maker.json["nodes"][0]["weights"]);
     check_nodes(GltfFile::from_glb(maker.glb()), out);
@@ -669,6 +669,16 @@ TEST_CASE("files with levels already are refused, and those of other programs ar
   const auto scene = Scene::read_multi_lod_bytes(maker.glb());
   REQUIRE_FALSE(scene);
   CHECK(scene.error().code == ErrorCode::Unsupported);
+}
+
+TEST_CASE("attributes of a type that vertices may not have are left out, with a note") {
+  GltfMaker maker = strips(1, 4);
+  const std::size_t ids = maker.add_accessor(std::vector<std::uint32_t>(10, 3), 5125, "SCALAR", 1);
+  maker.json["meshes"][0]["primitives"][0]["attributes"]["_ID"] = ids;
+  const Scene scene = read(maker);
+  REQUIRE(scene.notes().size() == 1);
+  CHECK_THAT(scene.notes()[0], contains("mesh 0: attribute _ID is left out"));
+  CHECK_FALSE(encoded(scene, {}).json["meshes"][0]["primitives"][0]["attributes"].contains("_ID"));
 }
 
 TEST_CASE("broken scenes are errors that name what is broken") {

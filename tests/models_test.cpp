@@ -43,6 +43,28 @@ TEST_CASE("every readable model comes back from its stream bit for bit, attribut
   CHECK(readable > 30);
 }
 
+TEST_CASE("every readable model reaches every ratio, or says what keeps it from there") {
+  LODESTONE_SKIP_WITHOUT_MODELS();
+  for (const auto& path : mesh_files("")) {
+    INFO(path.string());
+    const auto file = read_mesh(path);
+    if (!file || file->mesh.face_count() == 0 || file->mesh.face_count() > kMostFaces) continue;
+    SimplifyOptions options;
+    options.measure_step = 0;
+    const auto result = simplify(file->mesh, options);
+    REQUIRE(result);
+    const std::size_t fewest = face_counts(result->mesh).front();
+    const BlockedCounts& blocked = result->blocked;
+    CHECK(fewest > 0);
+    CHECK(blocked.locked + blocked.flip + blocked.link + blocked.ring == result->mesh.base_vertex_count);
+    for (const double ratio : {0.5, 0.1}) {
+      const auto faces = static_cast<std::size_t>(ratio * static_cast<double>(file->mesh.face_count()));
+      // What is left is one piece that no legal removal makes smaller: few faces, or most edges already joined.
+      if (fewest > faces) CHECK((fewest <= 20 || blocked.link > result->mesh.base_vertex_count / 2));
+    }
+  }
+}
+
 TEST_CASE("the model that comes with the repository comes back from its stream bit for bit") {
   const auto file = read_mesh(demo_model());
   REQUIRE(file);

@@ -35,7 +35,7 @@ void fill_with_fan(SectorPatch& sector, std::size_t apex) {
 bool closing_edge_is_free(const Connectivity& mesh, const RemovalRecord& record) {
   const SectorPatch& first = record.sectors.front();
   const auto vertex = [&](const SectorPatch& s, std::size_t i) { return mesh.vertex_of_wedge(s.polygon[i]); };
-  if (first.closed) {
+  if (first.shape == SectorShape::Closed) {
     // A triangle must not be closed over an existing one.
     const Index outer = mesh.opposite(3 * first.faces[0] + first.rotation[0]);
     return first.polygon.size() > 3 || outer == kNoIndex || mesh.vertex(outer) != vertex(first, 2);
@@ -53,7 +53,7 @@ bool plan_removal(const Connectivity& mesh, Index vertex, Random& random, Remova
   if (kind != VertexKind::Interior && kind != VertexKind::Border && kind != VertexKind::Feature) return false;
   if (star.corners.size() > 60) return false;
   record.vertex = vertex;
-  describe_sectors(mesh, star, record.sectors);
+  describe_removal(mesh, star, record);
   if (!closing_edge_is_free(mesh, record)) return false;
   for (SectorPatch& sector : record.sectors) {
     const auto apex = random.below(sector.polygon.size());

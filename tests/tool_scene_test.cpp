@@ -199,6 +199,82 @@ TEST_CASE("the profile of files writes nothing where one of its files cannot be 
   CHECK(names_in(shop.folder.path()) == Names{"in.glb", "out_LOD1.glb"});
 }
 
+TEST_CASE("build: settings lock and weigh nodes and materials by name, and name what they do not know") {
+  const SceneShop shop;
+  const std::string settings = (shop.folder / "s.json").string();
+  REQUIRE(shop.build({"--ratio", "0.25", "--levels", "2"}).exit_code == 0);
+  const std::size_t plain = faces_of(shop.read_report(), 0, 1);
+
+  write_text(settings, R"({"nodes": {"large": {"importance": 8}}})");
+  REQUIRE(shop.build({"--ratio", "0.25", "--levels", "2", "--settings", settings}).exit_code == 0);
+  CHECK(faces_of(shop.read_report(), 0, 1) > plain);
+
+  write_text(settings, R"({"nodes": {"large": {"lock": true}}})");
+  REQUIRE(shop.build({"--ratio", "0.5", "--levels", "2", "--per-mesh", "--settings", settings}).exit_code == 0);
+  CHECK(faces_of(shop.read_report(), 0, 1) == 1280);
+  CHECK(faces_of(shop.read_report(), 1, 1) <= 640);
+
+  const auto refusal = [&](const char* text) {
+    write_text(settings, text);
+    const ProgramRun run = shop.build({"--settings", settings});
+    CHECK(run.exit_code != 0);
+    return run.err;
+  };
+  CHECK_THAT(refusal(R"({"nodes": {"lrge": {"lock": true}}})"), contains("no node of the scene's meshes is called 'lrge'"));
+  CHECK_THAT(refusal(R"({"nodes": {"large": {"look": true}}})"), contains("no setting is called 'look'"));
+  CHECK_THAT(refusal(R"({"nodes": {"large": {"importance": -1}}})"), contains("importance is not a number of 0 or more"));
+  CHECK_THAT(refusal("[]"), contains("is not a JSON object"));
+}
+
+TEST_CASE("build: weights are checked and reported; attributes' deviations are in the report") {
+  const SceneShop shop;
+  CHECK_THAT(shop.build({"--weight", "smell=1"}).err, contains("'smell' is not normal, texcoord, color, skin or target"));
+  CHECK_THAT(shop.build({"--weight", "normal=x"}).err, contains("'normal=x' does not end in a factor"));
+  CHECK(shop.build({"--weight", "normal"}).exit_code == 1);
+  const ProgramRun run = run_program({"build", demo_model().string(), "-o", shop.glb, "--report", shop.report,
+                                      "--weight", "normal=1,skin=0", "--levels", "2"});
+  REQUIRE(run.exit_code == 0);
+  const Json report = shop.read_report();
+  CHECK(report["settings"]["weights"]["normal"] == 1);
+  CHECK(report["settings"]["weights"]["skin"] == 0);
+  const Json attributes = report["meshes"][0]["levels"][1]["attributes"];
+  REQUIRE(attributes.size() == 1);
+  CHECK(attributes[0]["name"] == "NORMAL");
+  CHECK(attributes[0]["mean"] > 0);
+}
+
+TEST_CASE("build: an attribute of importance keeps its vertices, and a bad one is named") {
+  const ScratchDirectory folder;
+  const std::string in = (folder / "in.glb").string(), out = (folder / "out.glb").string();
+  const std::string report = (folder / "r.json").string();
+  const auto make = [&](float front) {
+    GltfMaker maker;
+    const TriangleSoup soup = icosphere(4, 0.01, 3);
+    std::vector<float> positions, importance;
+    for (const Vec3f& p : soup.positions) {
+      positions.insert(positions.end(), {p.x, p.y, p.z});
+      importance.push_back(p.x > 0 ? front : 1);
+    }
+    const std::size_t vertices = maker.add_floats(positions, "VEC3", 3);
+    const std::size_t values = maker.add_floats(importance, "SCALAR", 1);
+    const std::size_t indices = maker.add_accessor(soup.indices, 5125, "SCALAR", 1);
+    const GltfJson primitive = {{"attributes", {{"POSITION", vertices}, {"_LODESTONE_IMPORTANCE", values}}},
+                                {"indices", indices}};
+    maker.add("meshes", {{"primitives", GltfJson::array({primitive})}});
+    maker.add("scenes", {{"nodes", {0}}});
+    maker.add("nodes", {{"mesh", 0}});
+    REQUIRE(write_file(in, maker.glb()));
+    return run_program({"build", in, "-o", out, "--report", report, "--faces", "100"});
+  };
+  REQUIRE(make(1000).exit_code == 0);
+  const Json locked = Json::parse(file_text(report));
+  CHECK(locked["levels"][1]["target_met"] == false);
+  CHECK(locked["meshes"][0]["stream"]["blocked"]["locked"] > 1000);
+  REQUIRE(make(1).exit_code == 0);
+  CHECK(Json::parse(file_text(report))["levels"][1]["target_met"] == true);
+  CHECK_THAT(make(-2).err, contains("_LODESTONE_IMPORTANCE has -2"));
+}
+
 TEST_CASE("two runs over a scene write the same bytes") {
   const SceneShop shop;
   REQUIRE(shop.build({}).exit_code == 0);

@@ -20,6 +20,7 @@ void BuildCommand::add_to(CLI::App& app) {
   app.add_flag("--strict", strict, "Write nothing and exit with 5 where a target cannot be met");
   app.add_flag("-q,--quiet", quiet, "Print warnings and errors only");
   add_level_options(app);
+  add_control_options(app);
   add_metric_options(app);
   add_format_options(app);
   app.footer(
@@ -39,6 +40,29 @@ void BuildCommand::add_level_options(CLI::App& app) {
   targets.add_to(app, group, true);
   app.add_flag("--per-mesh", per_mesh, "Targets are for each mesh; otherwise the whole scene shares them")
       ->group(group);
+}
+
+void BuildCommand::add_control_options(CLI::App& app) {
+  const char* group = "What to keep";
+  app.add_flag("--lock-border", lock_border, "Keep every vertex of an open border")->group(group);
+  app.add_option("--crease-angle", crease_angle, "Keep edges between faces that turn by more than this, in degrees")
+      ->check(CLI::Range(0.0, 180.0))
+      ->type_name("DEG")
+      ->group(group);
+  app.add_option("--weight", weights,
+                 "How much differences of an attribute count: normal=0.25, texcoord=1, color=0.5, skin=1, target=1")
+      ->type_name("NAME=FACTOR")
+      ->delimiter(',')
+      ->group(group);
+  app.add_option("--importance", importance,
+                 "The vertex attribute that says how important a vertex is (default _LODESTONE_IMPORTANCE): a factor, "
+                 "from 1000 on the vertex stays; a COLOR_n counts 1/16 where black, 16 where bright, and stays where white")
+      ->type_name("NAME")
+      ->group(group);
+  app.add_option("--settings", settings, "Importance and locks of materials and nodes, by name; see the README")
+      ->type_name("S.json")
+      ->group(group);
+  app.add_flag("--vanish", vanish, "Let even the last piece of a mesh vanish where the target asks for it")->group(group);
 }
 
 void BuildCommand::add_metric_options(CLI::App& app) {

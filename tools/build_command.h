@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <lodestone/core/result.h>
 
@@ -26,6 +27,12 @@ struct BuildCommand {
   std::optional<int> level_count;  ///< with --ratio only, the whole mesh included; 5 if not given
   TargetOptions targets;
   bool per_mesh = false;
+  bool lock_border = false;
+  bool vanish = false;
+  std::optional<double> crease_angle;  ///< degrees
+  std::vector<std::string> weights;    ///< "NAME=FACTOR"
+  std::string importance;              ///< an attribute's name
+  std::optional<std::filesystem::path> settings;
   std::string profile = "msft-lod";
   bool no_stream = false;
   bool no_draco = false;
@@ -40,6 +47,7 @@ struct BuildCommand {
  private:
   void add_level_options(CLI::App& app);
   void add_metric_options(CLI::App& app);
+  void add_control_options(CLI::App& app);
   void add_format_options(CLI::App& app);
 };
 

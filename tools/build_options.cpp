@@ -2,6 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
+#include <string_view>
+
+#include "error_size.h"
+#include "messages.h"
 
 namespace lodestone::tool {
 namespace {
@@ -14,6 +20,34 @@ Metric metric_of(const std::string& name) {
   if (name == "mean") return Metric::Mean;
   if (name == "principal") return Metric::Principal;
   return Metric::Hybrid;
+}
+
+Result<void> set_weight(const std::string& text, AttributeWeights& weights) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  const std::map<std::string, double*> known = {{"normal", &weights.normal},
+                                                {"texcoord", &weights.texcoord},
+                                                {"color", &weights.color},
+                                                {"skin", &weights.skin},
+                                                {"target", &weights.target}};
+  const auto found = known.find(name);
+  if (found == known.end())
+    return fail(ErrorCode::InvalidArgument,
+                "--weight: " + quoted(std::string_view(name)) + " is not normal, texcoord, color, skin or target");
+  const Result<double> factor = parse_number(equals == text.npos ? "" : text.substr(equals + 1));
+  if (!factor || !(*factor >= 0))
+    return fail(ErrorCode::InvalidArgument,
+                "--weight: " + quoted(std::string_view(text)) + " does not end in a factor of 0 or more");
+  *found->second = *factor;
+  return {};
+}
+
+Json weights_json(const AttributeWeights& weights) {
+  return {{"normal", weights.normal},
+          {"texcoord", weights.texcoord},
+          {"color", weights.color},
+          {"skin", weights.skin},
+          {"target", weights.target}};
 }
 
 }  // namespace
@@ -43,8 +77,13 @@ void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene)
   });
 }
 
-SimplifyOptions metric_options(const BuildCommand& options) {
+Result<SimplifyOptions> simplify_options(const BuildCommand& options) {
   SimplifyOptions simplify;
+  for (const std::string& text : options.weights)
+    if (Result<void> done = set_weight(text, simplify.weights); !done) return tl::unexpected(done.error());
+  simplify.lock_border = options.lock_border;
+  simplify.vanish = options.vanish;
+  if (options.crease_angle) simplify.crease_angle = *options.crease_angle * std::numbers::pi / 180;
   simplify.metric = metric_of(options.metric);
   simplify.normalisation = options.normalisation == "density" ? Normalisation::Density : Normalisation::Integral;
   simplify.reference = options.reference == "current" ? Reference::Current : Reference::Original;
@@ -58,6 +97,12 @@ Json settings_json(const BuildCommand& options, std::size_t level_count) {
                {"levels", level_count},
                {"per_mesh", options.per_mesh},
                {"profile", options.profile},
+               {"lock_border", options.lock_border},
+               {"vanish", options.vanish},
+               {"crease_angle_degrees", options.crease_angle ? Json(*options.crease_angle) : Json(nullptr)},
+               {"weights", weights_json(simplify_options(options).value_or(SimplifyOptions{}).weights)},
+               {"importance", options.importance},
+               {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", !options.no_stream && !has_file_per_level(options)},
                {"draco", !options.no_draco}};
   json["position_bits"] = options.no_draco ? Json(nullptr) : Json(options.position_bits);

@@ -20,8 +20,8 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options);
 /// Sorts targets of one kind: finest first, by what they come to for the whole scene.
 void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene);
 
-/// Returns what the metric's options say.
-SimplifyOptions metric_options(const BuildCommand& options);
+/// Returns what the options say of every mesh alike. Errors: InvalidArgument for a weight that is none.
+Result<SimplifyOptions> simplify_options(const BuildCommand& options);
 
 /// Returns the options as understood, for the report.
 Json settings_json(const BuildCommand& options, std::size_t level_count);

@@ -1,6 +1,7 @@
 #include "build_report.h"
 
 #include <cstdio>
+#include <numbers>
 
 #include "process_memory.h"
 #include "text_table.h"
@@ -49,7 +50,23 @@ Json stream_json(const BuildReport::Stream& stream) {
            {{"locked", stream.blocked.locked},
             {"flip", stream.blocked.flip},
             {"link", stream.blocked.link},
-            {"ring", stream.blocked.ring}}}};
+            {"ring", stream.blocked.ring},
+            {"error", stream.blocked.error}}}};
+}
+
+/// Angles in degrees, as elsewhere in the report.
+Json attribute_json(const AttributeDeviation& deviation) {
+  const double unit = deviation.name == "NORMAL" ? 180 / std::numbers::pi : 1;
+  return {{"name", deviation.name},
+          {"mean", deviation.mean * unit},
+          {"rms", deviation.rms * unit},
+          {"max", deviation.maximum * unit}};
+}
+
+Json attributes_json(const std::vector<AttributeDeviation>& deviations) {
+  Json json = Json::array();
+  for (const AttributeDeviation& deviation : deviations) json.push_back(attribute_json(deviation));
+  return json;
 }
 
 Json part_json(const BuildReport::MeshPart& part) {
@@ -58,7 +75,8 @@ Json part_json(const BuildReport::MeshPart& part) {
     levels.push_back({{"faces", level.face_count},
                       {"vertices", level.vertex_count},
                       {"deviation", deviation_json(level.deviation)},
-                      {"deviation_bound", level.deviation_bound}});
+                      {"deviation_bound", level.deviation_bound},
+                      {"attributes", attributes_json(level.attributes)}});
   return {{"name", part.name},
           {"instances", part.instance_count},
           {"scale", part.scale},

@@ -7,6 +7,7 @@
 
 #include <lodestone/core/assemble.h>
 #include <lodestone/core/mesh.h>
+#include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
 
@@ -51,6 +52,7 @@ struct BuildReport {
       std::size_t vertex_count = 0;
       Deviation deviation;
       double deviation_bound = 0;
+      std::vector<AttributeDeviation> attributes;
     };
     std::string name;
     std::size_t instance_count = 0;

@@ -6,6 +6,7 @@
 
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
+#include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
@@ -13,6 +14,7 @@
 #include "build_options.h"
 #include "build_output.h"
 #include "build_report.h"
+#include "build_settings.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "scene_target.h"
@@ -28,6 +30,7 @@ constexpr double kMostFacesOfOneRemoval = 2;
 AssemblyReport assembly_of(const Scene& scene) {
   AssemblyReport total;
   for (const SceneMesh& mesh : scene.meshes()) total = total + mesh.assembly;
+  for (const AssemblyReport& dropped : scene.dropped()) total = total + dropped;
   return total;
 }
 
@@ -63,9 +66,10 @@ void append_item(std::string& list, const std::string& item) { list += (list.emp
 /// Why the base mesh's vertices stay.
 std::string blocked_text(const BlockedCounts& blocked) {
   std::string text;
-  if (blocked.locked > 0) append_item(text, std::to_string(blocked.locked) + " on features this version keeps");
+  if (blocked.locked > 0) append_item(text, std::to_string(blocked.locked) + " are locked");
   if (blocked.flip > 0) append_item(text, std::to_string(blocked.flip) + " would turn a face over");
   if (blocked.link > 0) append_item(text, std::to_string(blocked.link) + " would double an edge");
+  if (blocked.error > 0) append_item(text, std::to_string(blocked.error) + " beyond the error allowed");
   if (blocked.ring > 0) append_item(text, std::to_string(blocked.ring) + " have too many neighbours");
   return "vertices left: " + (text.empty() ? "none" : text);
 }
@@ -91,9 +95,11 @@ class BuildRun {
 
   Result<void> read();
   Result<void> simplify_meshes();
-  SimplifyOptions simplify_options(const SceneMesh& mesh) const;
+  Result<void> read_controls();
+  Result<SimplifyOptions> options_for(const SceneMesh& mesh) const;
   StopCriteria stop_criteria(const SceneMesh& mesh) const;
   void report_simplified(const SceneMesh& mesh, const SimplifyResult& result);
+  std::vector<double> world_charges(const SimplifyResult& result, double scale) const;
   void make_levels();
   void add_level(const SceneChoice& choice, bool whole);
   void add_mesh_level(std::size_t mesh, Index position, const SceneChoice& choice);
@@ -107,6 +113,8 @@ class BuildRun {
   ProgressBar progress_;
   Stopwatch stopwatch_;
   std::vector<LevelTarget> targets_;
+  SimplifyOptions common_options_;
+  BuildSettings settings_;
   std::optional<Scene> scene_;
   std::vector<SimplifyResult> simplified_;  // by mesh, as the next three
   std::vector<Cursor> cursors_;
@@ -122,6 +130,7 @@ Result<Outcome> BuildRun::run() {
   if (Result<void> paths = check_paths(options_, targets_.size() + 1); !paths) return tl::unexpected(paths.error());
   report_.settings = settings_json(options_, targets_.size() + 1);
 
+  if (Result<void> done = read_controls(); !done) return tl::unexpected(done.error());
   if (Result<void> done = read(); !done) return tl::unexpected(done.error());
   if (Result<void> done = simplify_meshes(); !done) return tl::unexpected(done.error());
   make_levels();
@@ -133,6 +142,17 @@ Result<Outcome> BuildRun::run() {
   return Outcome::Done;
 }
 
+Result<void> BuildRun::read_controls() {
+  Result<SimplifyOptions> common = simplify_options(options_);
+  if (!common) return tl::unexpected(common.error());
+  common_options_ = std::move(*common);
+  if (!options_.settings) return {};
+  Result<BuildSettings> settings = read_settings(*options_.settings);
+  if (!settings) return tl::unexpected(settings.error());
+  settings_ = std::move(*settings);
+  return {};
+}
+
 Result<void> BuildRun::read() {
   progress_.start("reading");
   Result<Scene> scene = Scene::read(options_.input);
@@ -140,6 +160,7 @@ Result<void> BuildRun::read() {
   if (!scene) return tl::unexpected(scene.error());
   scene_ = std::move(*scene);
   if (Result<void> fit = check_input(options_.input, *scene_); !fit) return fit;
+  if (Result<void> known = check_names(settings_, *scene_); !known) return known;
   report_.input = input_report(options_.input, *scene_);
   sort_finest_first(targets_, {report_.input.face_count, scene_->box().diagonal()});
   for (const std::string& line : remarks(*scene_)) print_warning(quoted(options_.input) + ": " + line);
@@ -159,9 +180,12 @@ StopCriteria BuildRun::stop_criteria(const SceneMesh& mesh) const {
   return stop;
 }
 
-SimplifyOptions BuildRun::simplify_options(const SceneMesh& mesh) const {
-  SimplifyOptions options = metric_options(options_);
+Result<SimplifyOptions> BuildRun::options_for(const SceneMesh& mesh) const {
+  SimplifyOptions options = common_options_;
   options.stop = stop_criteria(mesh);
+  Result<std::vector<float>> importance = vertex_importance(mesh, settings_, options_.importance);
+  if (!importance) return tl::unexpected(importance.error());
+  options.importance = std::move(*importance);
   // Bounds of every record are for the stream, for levels by error, and for sharing faces among meshes.
   const bool by_error = !targets_.empty() && targets_.back().kind == TargetKind::Error;
   const bool shared = scene_->meshes().size() > 1 && !options_.per_mesh;
@@ -174,13 +198,14 @@ Result<void> BuildRun::simplify_meshes() {
   std::size_t total = 0, done = 0;
   for (const SceneMesh& mesh : scene_->meshes()) total += mesh.mesh.face_count();
   for (const SceneMesh& mesh : scene_->meshes()) {
-    SimplifyOptions options = simplify_options(mesh);
+    Result<SimplifyOptions> options = options_for(mesh);
+    if (!options) return tl::unexpected(options.error());
     const auto faces = static_cast<double>(mesh.mesh.face_count());
-    options.progress = [&](double share) {
+    options->progress = [&](double share) {
       progress_.update((static_cast<double>(done) + share * faces) / static_cast<double>(total));
       return true;
     };
-    Result<SimplifyResult> result = simplify(mesh.mesh, options);
+    Result<SimplifyResult> result = simplify(mesh.mesh, *options);
     if (!result) {
       progress_.clear();
       return fail(result.error().code,
@@ -210,6 +235,14 @@ void BuildRun::report_simplified(const SceneMesh& mesh, const SimplifyResult& re
   total.blocked = total.blocked + stream.blocked;
 }
 
+/// What was charged for each position, in world units; angles know no units.
+std::vector<double> BuildRun::world_charges(const SimplifyResult& result, double scale) const {
+  std::vector<double> charges(result.charge.begin(), result.charge.end());
+  if (common_options_.metric != Metric::Gaussian)
+    for (double& charge : charges) charge *= scale;
+  return charges;
+}
+
 void BuildRun::make_levels() {
   progress_.start("measuring levels");
   std::vector<ScenePart> parts;
@@ -217,7 +250,8 @@ void BuildRun::make_levels() {
   for (std::size_t i = 0; i < simplified_.size(); ++i) {
     const SceneMesh& mesh = scene_->meshes()[i];
     const ProgressiveMesh& progressive = simplified_[i].mesh;
-    parts.push_back({&progressive, mesh.scale, mesh.instance_count, simplified_[i].stop_reason});
+    parts.push_back({&progressive, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
+                     settings_.importance_of(mesh), world_charges(simplified_[i], mesh.scale)});
     whole.positions.push_back(static_cast<Index>(progressive.record_count()));
     cursors_.emplace_back(progressive);
   }
@@ -262,11 +296,13 @@ void BuildRun::add_mesh_level(std::size_t mesh, Index position, const SceneChoic
     level.deviation = levels.back().deviation;
   else if (position < progressive.record_count())
     level.deviation = measure_deviation(scene_->meshes()[mesh].mesh, level.mesh, level_measure());
+  std::vector<AttributeDeviation> attributes;
+  if (position < progressive.record_count()) attributes = measure_attributes(scene_->meshes()[mesh].mesh, level.mesh);
   level.curvature_error = progressive.curvature_error[position];
   level.stop_reason = choice.stopped_by;
   last_positions_[mesh] = position;
-  report_.meshes[mesh].levels.push_back(
-      {level.mesh.face_count(), level.mesh.vertex_count(), level.deviation, progressive.deviation[position]});
+  report_.meshes[mesh].levels.push_back({level.mesh.face_count(), level.mesh.vertex_count(), level.deviation,
+                                         progressive.deviation[position], std::move(attributes)});
   levels.push_back(std::move(level));
 }
 

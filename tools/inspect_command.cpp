@@ -56,7 +56,7 @@ Result<KindCounts> count_kinds(const Mesh& mesh) {
 
 Json level_json(const Asset::Level& level) {
   return {
-      {"faces", level.mesh.face_count()},
+      {"faces", level.face_count},
       {"vertices", level.mesh.vertex_count()},
       {"bytes", level.byte_length},
       {"draco", level.draco},
@@ -132,7 +132,7 @@ void print_levels(const Asset& asset) {
   TextTable table({"level", "faces", "vertices", "max", "mean", "rms", "epsilon", "bytes", "coding"});
   for (std::size_t i = 0; i < asset.levels.size(); ++i) {
     const Asset::Level& level = asset.levels[i];
-    table.add({text_of(i), text_of(level.mesh.face_count()), text_of(level.mesh.vertex_count()),
+    table.add({text_of(i), text_of(level.face_count), text_of(level.mesh.vertex_count()),
                number_text(level.maximum_deviation), number_text(level.mean_deviation),
                number_text(level.rms_deviation), number_text(level.curvature_error), text_of(level.byte_length),
                level.draco ? "draco" : "plain"});

@@ -8,10 +8,14 @@
 namespace lodestone::tool {
 namespace {
 
-/// The world-unit errors of a part's positions, made to fall from coarse to fine: the bounds alone need not.
-std::vector<double> falling_errors(const ScenePart& part) {
-  std::vector<double> errors(part.mesh->deviation.begin(), part.mesh->deviation.end());
-  for (double& error : errors) error *= part.scale;
+/// What is lost at a part's positions, made to fall from coarse to fine: bounds of deviations alone need not.
+std::vector<double> falling_losses(const ScenePart& part) {
+  std::vector<double> errors = part.loss;
+  if (errors.empty()) {
+    errors.assign(part.mesh->deviation.begin(), part.mesh->deviation.end());
+    for (double& error : errors) error *= part.scale;
+  }
+  for (double& error : errors) error *= part.importance;
   for (std::size_t p = errors.size() - 1; p-- > 0;) errors[p] = std::max(errors[p], errors[p + 1]);
   return errors;
 }
@@ -21,7 +25,7 @@ class FaceBudget {
  public:
   explicit FaceBudget(std::span<const ScenePart> parts) : parts_(parts) {
     for (const ScenePart& part : parts) {
-      errors_.push_back(falling_errors(part));
+      errors_.push_back(falling_losses(part));
       faces_.push_back(face_counts(*part.mesh));
     }
   }
@@ -56,7 +60,7 @@ class FaceBudget {
     return faces;
   }
 
-  /// Refines the worst part again and again, as long as its next record fits.
+  /// Refines the worst part again and again, as long as its next record fits; leaves no part with half a piece.
   void spend(std::vector<Index>& positions, double budget) const {
     struct Candidate {
       double error;
@@ -78,6 +82,8 @@ class FaceBudget {
       left -= cost;
       queue.push({errors_[i][++position], i});
     }
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      while (!is_whole(*parts_[i].mesh, positions[i])) --positions[i];
   }
 
   std::span<const ScenePart> parts_;

@@ -19,6 +19,9 @@ struct ScenePart {
   double scale = 1;                ///< world units per mesh unit
   std::size_t instance_count = 1;  ///< how often it is drawn
   StopReason end = StopReason::Stuck;
+  double importance = 1;  ///< where parts share faces: multiplies what its faces are worth
+  /// By position, falling from coarse to fine: what is lost there, in a unit that all parts share. Empty: the deviation.
+  std::vector<double> loss;
 };
 
 /// What a target counts over.
@@ -39,9 +42,9 @@ struct SceneChoice {
 std::size_t drawn_faces(std::span<const ScenePart> parts);
 std::size_t drawn_faces(std::span<const ScenePart> parts, std::span<const Index> positions);
 
-/// Finds the positions that answer a target. Faces go where they keep the largest deviation in world units small: all
-/// parts get the coarsest level within one error, the smallest for which the faces suffice, and what is left goes to
-/// whichever part deviates most. `diagonal` is the scene's.
+/// Finds the positions that answer a target. Faces go where they are worth most: all parts get the coarsest level within
+/// one loss, the smallest for which the faces suffice, and what is left goes to whichever part has lost most. `diagonal`
+/// is the scene's.
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal);
 

@@ -42,7 +42,7 @@ AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b) {
 }
 
 BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b) {
-  return {a.locked + b.locked, a.flip + b.flip, a.link + b.link, a.ring + b.ring};
+  return {a.locked + b.locked, a.flip + b.flip, a.link + b.link, a.ring + b.ring, a.error + b.error};
 }
 
 }  // namespace lodestone::tool

@@ -138,7 +138,7 @@ void drop_degenerate_and_duplicate(CleanFaces& faces, const std::vector<Index>& 
     const Index* c = &faces.corners[3 * std::size_t{f}];
     return rotated_to_smallest({first_point[c[0]], first_point[c[1]], first_point[c[2]]});
   };
-  std::vector<std::array<Index, 3>> seen;
+  std::vector<std::array<Index, 4>> seen;  // vertices and material: a decal may lie on a face of another material
   HashIndex table(faces.corners.size() / 3);
   filter_faces(faces, [&](Index f) {
     const auto face = welded(f);
@@ -146,11 +146,12 @@ void drop_degenerate_and_duplicate(CleanFaces& faces, const std::vector<Index>& 
       ++report.degenerate_faces;
       return false;
     }
-    const std::uint64_t hash = mix_bits(mix_bits(mix_bits(face[0]) + face[1]) + face[2]);
+    const std::array<Index, 4> key{face[0], face[1], face[2], faces.material.empty() ? 0 : faces.material[f]};
+    const std::uint64_t hash = mix_bits(mix_bits(mix_bits(mix_bits(key[0]) + key[1]) + key[2]) + key[3]);
     const auto candidate = static_cast<Index>(seen.size());
     const bool is_new =
-        table.find_or_insert(hash, candidate, [&](Index other) { return seen[other] == face; }) == candidate;
-    if (is_new) seen.push_back(face);
+        table.find_or_insert(hash, candidate, [&](Index other) { return seen[other] == key; }) == candidate;
+    if (is_new) seen.push_back(key);
     report.duplicate_faces += is_new ? 0 : 1;
     return is_new;
   });

@@ -31,7 +31,7 @@ Result<Connectivity> Connectivity::build(const Mesh& mesh) {
   result.face_count_ = mesh.face_count();
   if (auto joined = result.join_faces(); !joined) return tl::unexpected(joined.error());
   if (auto anchored = result.anchor_vertices(); !anchored) return tl::unexpected(anchored.error());
-  result.mark_copies(mesh);
+  result.link_copies(mesh);
   return result;
 }
 
@@ -85,26 +85,29 @@ Result<void> Connectivity::anchor_vertices() {
   return {};
 }
 
-void Connectivity::mark_copies(const Mesh& mesh) {
-  is_copy_.assign(mesh.vertex_count(), 0);
+void Connectivity::link_copies(const Mesh& mesh) {
   const auto position_less = [&](Index a, Index b) {
     const Vec3f& p = mesh.positions[a];
     const Vec3f& q = mesh.positions[b];
-    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
   };
   std::vector<Index> order(mesh.vertex_count());
   std::iota(order.begin(), order.end(), Index{0});
   std::sort(order.begin(), order.end(), position_less);
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (mesh.positions[order[i - 1]] == mesh.positions[order[i]]) is_copy_[order[i - 1]] = is_copy_[order[i]] = 1;
-
-  // A cut edge whose ends stayed single (where sheets or a one-sided strip close) is a border met twice.
-  std::vector<std::uint64_t> borders;
-  for (Index c = 0; c < corner_wedge_.size(); ++c)
-    if (opposite_[c] == kNoIndex) borders.push_back(edge_key(vertex(next_corner(c)), vertex(previous_corner(c))));
-  std::sort(borders.begin(), borders.end());
-  for (std::size_t i = 1; i < borders.size(); ++i)
-    if (borders[i - 1] == borders[i]) is_copy_[borders[i] >> 32] = is_copy_[borders[i] & kNoIndex] = 1;
+  const auto same = [&](std::size_t i, std::size_t j) { return mesh.positions[order[i]] == mesh.positions[order[j]]; };
+  for (std::size_t i = 0, j = 0; i < order.size(); i = j) {
+    for (j = i + 1; j < order.size() && same(i, j);) ++j;
+    if (j - i == 1) continue;
+    if (next_copy_.empty()) {
+      next_copy_.resize(order.size());
+      std::iota(next_copy_.begin(), next_copy_.end(), Index{0});
+      site_ = next_copy_;
+    }
+    for (std::size_t k = i; k < j; ++k) {
+      next_copy_[order[k]] = order[k + 1 < j ? k + 1 : i];
+      site_[order[k]] = order[i];
+    }
+  }
 }
 
 bool Connectivity::is_constrained(Index corner) const {
@@ -156,7 +159,7 @@ VertexKind Connectivity::kind(Index vertex) const {
 }
 
 VertexKind Connectivity::kind(Index vertex, const Star& star) const {
-  if (is_copy_[vertex] != 0) return VertexKind::NonManifold;
+  if (is_copy(vertex)) return VertexKind::NonManifold;
   if (star.is_plain()) return VertexKind::Interior;
   if (!star.closed) return star.sector_count() == 1 ? VertexKind::Border : VertexKind::Corner;
   return star.sector_count() == 2 ? VertexKind::Feature : VertexKind::Corner;

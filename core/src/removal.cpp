@@ -3,8 +3,10 @@
 
 #include <lodestone/core/removal.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <unordered_set>
 #include <utility>
 
 namespace lodestone {
@@ -91,15 +93,21 @@ std::vector<RimEdge> fine_rim(const Connectivity& mesh, const SectorPatch& secto
 
 std::vector<RimEdge> coarse_rim(const Connectivity& mesh, const SectorPatch& sector) {
   if (sector.polygon.size() == 2)
-    return {{sector.lone_outer, sector.lone_outer != kNoIndex && mesh.is_crease(sector.lone_outer)}};
+    return {{sector.lone_outer, sector.lone_crease}};
   CoarseEdges edges(sector);
   std::vector<RimEdge> rim(sector.face_count());
   for (std::size_t i = 0; i < rim.size(); ++i) rim[i] = {mesh.opposite(edges.rim(i)), mesh.is_crease(edges.rim(i))};
   return rim;
 }
 
-/// Replaces a sector's fine faces by its coarse ones; returns the corner that faces the closing edge of an open one.
-Index write_coarse_faces(const PatchAccess& access, SectorPatch& sector) {
+/// The corners that face the two edges at which a filled sector meets its neighbours; kNoIndex at a border.
+struct SectorEnds {
+  Index entry = kNoIndex;
+  Index exit = kNoIndex;
+};
+
+/// Replaces a sector's fine faces by its coarse ones.
+SectorEnds write_coarse_faces(const PatchAccess& access, SectorPatch& sector) {
   const std::vector<RimEdge> rim = fine_rim(access.mesh, sector);
   const std::size_t size = sector.polygon.size();
   for (std::size_t i = 0; i < sector.face_count(); ++i) {
@@ -110,13 +118,36 @@ Index write_coarse_faces(const PatchAccess& access, SectorPatch& sector) {
     const PolygonTriangle t = sector.triangles[i];
     access.set_face(sector.faces[i], {sector.polygon[t.a], sector.polygon[t.b], sector.polygon[t.c]});
   }
-  if (size == 2) return sector.lone_outer = rim[0].outer;
+  if (size == 2) {
+    sector.lone_outer = rim[0].outer;
+    sector.lone_crease = rim[0].crease;
+    return {sector.lone_outer, sector.lone_outer};
+  }
   CoarseEdges edges(sector);
   for (std::size_t i = 0; i < size; ++i)
     for (std::size_t j = i + 1; j < size; ++j)
       if (edges.at(i, j) != kNoIndex && edges.at(j, i) != kNoIndex) access.join(edges.at(i, j), edges.at(j, i), false);
   for (std::size_t i = 0; i < rim.size(); ++i) access.join(edges.rim(i), rim[i].outer, rim[i].crease);
-  return sector.closed ? kNoIndex : edges.closing();
+  if (sector.shape == SectorShape::Closed) return {};
+  const Index closing = edges.closing();
+  return {closing, sector.shape == SectorShape::Moved ? edges.at(size - 2, size - 1) : closing};
+}
+
+/// Joins neighbouring sectors at their new constrained edges.
+void join_ends(const PatchAccess& access, const RemovalRecord& record, const std::vector<SectorEnds>& ends) {
+  const std::size_t count = record.sectors.size();
+  // The first and the last end of an open star face its border.
+  if (record.open_star) access.join(ends.front().entry, kNoIndex, false), access.join(ends.back().exit, kNoIndex, false);
+  const auto is_open = [&](std::size_t s) { return record.sectors[s].shape == SectorShape::Open; };
+  if (count == 2 && is_open(0) && is_open(1) && !record.open_star) {
+    access.join(ends[0].exit, ends[1].entry, record.sectors[0].starts_at_crease || record.sectors[1].starts_at_crease);
+    return;
+  }
+  for (std::size_t s = record.open_star ? 1 : 0; s < count && count > 1; ++s) {
+    const std::size_t before = (s + count - 1) % count;
+    if (is_open(before) && is_open(s)) continue;  // between them lay the spoke to the target
+    access.join(ends[before].exit, ends[s].entry, record.sectors[s].starts_at_crease);
+  }
 }
 
 void write_fine_faces(const PatchAccess& access, const SectorPatch& sector) {
@@ -137,25 +168,30 @@ void write_fine_faces(const PatchAccess& access, const SectorPatch& sector) {
 }
 
 /// Joins the sectors' first and last spokes with one another, around the restored vertex.
-void join_sectors(const PatchAccess& access, const RemovalRecord& record) {
+void join_spokes(const PatchAccess& access, const RemovalRecord& record) {
   const std::size_t count = record.sectors.size();
-  const bool open_ring = count == 1 && !record.sectors[0].closed;
+  if (record.sectors[0].shape == SectorShape::Closed) {
+    const SectorPatch& ring = record.sectors[0];
+    access.join(next_corner(center_corner(ring, ring.face_count() - 1)), previous_corner(center_corner(ring, 0)), false);
+    return;
+  }
   for (std::size_t s = 0; s < count; ++s) {
     const SectorPatch& before = record.sectors[(s + count - 1) % count];
     const SectorPatch& sector = record.sectors[s];
     const Index last = next_corner(center_corner(before, before.face_count() - 1));
     const Index first = previous_corner(center_corner(sector, 0));
-    if (!open_ring) access.join(last, first, sector.starts_at_crease);
+    if (s > 0 || !record.open_star) access.join(last, first, sector.starts_at_crease);
   }
 }
 
-void anchor_ring(const PatchAccess& access, const RemovalRecord& record, Index closing) {
-  for (const SectorPatch& sector : record.sectors)
+void anchor_ring(const PatchAccess& access, const RemovalRecord& record) {
+  for (const SectorPatch& sector : record.sectors) {
     for (std::size_t i = 0; i < sector.triangles.size(); ++i)
       for (Index k = 0; k < 3; ++k) access.anchor(3 * sector.faces[i] + k);
-  if (closing == kNoIndex) return;
-  access.anchor(next_corner(closing));
-  access.anchor(previous_corner(closing));
+    if (sector.polygon.size() > 2 || sector.lone_outer == kNoIndex) continue;
+    access.anchor(next_corner(sector.lone_outer));
+    access.anchor(previous_corner(sector.lone_outer));
+  }
 }
 
 std::ptrdiff_t removed_faces(const RemovalRecord& record) {
@@ -167,52 +203,159 @@ std::ptrdiff_t removed_faces(const RemovalRecord& record) {
 
 }  // namespace
 
-void describe_sectors(const Connectivity& mesh, const Star& star, std::vector<SectorPatch>& sectors) {
-  sectors.resize(star.sector_count());
+namespace {
+
+/// Fills a sector with the faces [begin, end) of the star.
+void describe_faces(const Connectivity& mesh, const Star& star, Index begin, Index end, SectorPatch& sector) {
+  sector.polygon.clear();
+  sector.faces.clear();
+  sector.rotation.clear();
+  sector.triangles.clear();
+  sector.lone_outer = kNoIndex;
+  sector.center = mesh.wedge(star.corners[begin]);
+  sector.starts_at_crease = mesh.is_crease(previous_corner(star.corners[begin]));
+  for (Index i = begin; i < end; ++i) {
+    const Index corner = star.corners[i];
+    sector.polygon.push_back(mesh.wedge(next_corner(corner)));
+    sector.faces.push_back(face_of_corner(corner));
+    sector.rotation.push_back(static_cast<std::uint8_t>(corner % 3));
+  }
+}
+
+void start_record(const Connectivity& mesh, const Star& star, RemovalRecord& record) {
+  record.vertex = mesh.vertex(star.corners.front());
+  record.target = kNoIndex;
+  record.open_star = !star.closed;
+}
+
+}  // namespace
+
+void describe_removal(const Connectivity& mesh, const Star& star, RemovalRecord& record) {
+  start_record(mesh, star, record);
+  record.sectors.resize(star.sector_count());
   for (std::size_t s = 0; s < star.sector_count(); ++s) {
-    SectorPatch& sector = sectors[s];
-    sector.polygon.clear();
-    sector.faces.clear();
-    sector.rotation.clear();
-    sector.triangles.clear();
-    sector.closed = star.is_plain();
-    sector.center = mesh.wedge(star.corners[star.sector_begin[s]]);
-    sector.starts_at_crease = mesh.is_crease(previous_corner(star.corners[star.sector_begin[s]]));
-    for (Index i = star.sector_begin[s]; i < star.sector_end(s); ++i) {
-      const Index corner = star.corners[i];
-      sector.polygon.push_back(mesh.wedge(next_corner(corner)));
-      sector.faces.push_back(face_of_corner(corner));
-      sector.rotation.push_back(static_cast<std::uint8_t>(corner % 3));
-    }
-    if (!sector.closed) sector.polygon.push_back(mesh.wedge(previous_corner(star.corners[star.sector_end(s) - 1])));
+    SectorPatch& sector = record.sectors[s];
+    describe_faces(mesh, star, star.sector_begin[s], star.sector_end(s), sector);
+    sector.shape = star.is_plain() ? SectorShape::Closed : SectorShape::Open;
+    if (sector.shape == SectorShape::Open)
+      sector.polygon.push_back(mesh.wedge(previous_corner(star.corners[star.sector_end(s) - 1])));
+  }
+}
+
+void describe_collapse(const Connectivity& mesh, const Star& star, Index target, RemovalRecord& record) {
+  start_record(mesh, star, record);
+  const auto face_count = static_cast<Index>(star.corners.size());
+  assert(target < face_count || (!star.closed && target == face_count));
+  const Index target_wedge = target < face_count ? mesh.wedge(next_corner(star.corners[target]))
+                                                 : mesh.wedge(previous_corner(star.corners.back()));
+  record.target = mesh.vertex_of_wedge(target_wedge);
+  std::vector<Index> begin = star.sector_begin;
+  if (target < face_count && !std::binary_search(begin.begin(), begin.end(), target))
+    begin.insert(std::lower_bound(begin.begin(), begin.end(), target), target);
+  record.sectors.resize(begin.size());
+  for (std::size_t s = 0; s < begin.size(); ++s) {
+    SectorPatch& sector = record.sectors[s];
+    const Index end = s + 1 < begin.size() ? begin[s + 1] : face_count;
+    describe_faces(mesh, star, begin[s], end, sector);
+    sector.polygon.push_back(mesh.wedge(previous_corner(star.corners[end - 1])));
+    const bool touches_target = begin[s] == target || end == target || (star.closed && target == 0 && end == face_count);
+    sector.shape = touches_target ? SectorShape::Open : SectorShape::Moved;
+    if (!touches_target) sector.polygon.push_back(target_wedge);
   }
 }
 
 void remove_vertex(Connectivity& mesh, RemovalRecord& record) {
-  assert(record.sectors.size() == 1 || record.sectors.size() == 2);
   const PatchAccess access{mesh};
   save_anchors(mesh, record);
-  std::array<Index, 2> closing{kNoIndex, kNoIndex};
-  bool crease = false;
-  for (std::size_t s = 0; s < record.sectors.size(); ++s) {
-    closing[s] = write_coarse_faces(access, record.sectors[s]);
-    crease = crease || record.sectors[s].starts_at_crease;
-  }
-  if (!record.sectors[0].closed) access.join(closing[0], closing[1], crease && record.sectors.size() == 2);
+  std::vector<SectorEnds> ends;
+  ends.reserve(record.sectors.size());
+  for (SectorPatch& sector : record.sectors) ends.push_back(write_coarse_faces(access, sector));
+  join_ends(access, record, ends);
   access.set_anchor(record.vertex, kNoIndex);
-  anchor_ring(access, record, closing[0] != kNoIndex ? closing[0] : closing[1]);
+  anchor_ring(access, record);
   access.add_faces(-removed_faces(record));
 }
 
 void restore_vertex(Connectivity& mesh, const RemovalRecord& record) {
   const PatchAccess access{mesh};
   for (const SectorPatch& sector : record.sectors) write_fine_faces(access, sector);
-  join_sectors(access, record);
+  join_spokes(access, record);
   access.set_anchor(record.vertex, record.vertex_corner);
   for (const SectorPatch& sector : record.sectors)
     for (std::size_t i = 0; i < sector.polygon.size(); ++i)
       access.set_anchor(mesh.vertex_of_wedge(sector.polygon[i]), sector.anchors[i]);
   access.add_faces(removed_faces(record));
+}
+
+namespace {
+
+/// The faces that hang together with a vertex, over edges and copies.
+std::vector<Index> component_faces(const Connectivity& mesh, Index vertex) {
+  std::vector<Index> faces;
+  std::vector<Index> waiting{vertex};
+  std::unordered_set<Index> seen_vertices{vertex};
+  std::unordered_set<Index> seen_faces;
+  const auto visit = [&](Index v) {
+    if (seen_vertices.insert(v).second) waiting.push_back(v);
+  };
+  Star star;
+  while (!waiting.empty()) {
+    const Index v = waiting.back();
+    waiting.pop_back();
+    for (Index copy = mesh.next_copy(v); copy != v; copy = mesh.next_copy(copy)) visit(copy);
+    if (!mesh.has_vertex(v)) continue;
+    mesh.gather_star(v, star);
+    for (const Index corner : star.corners) {
+      if (seen_faces.insert(face_of_corner(corner)).second) faces.push_back(face_of_corner(corner));
+      visit(mesh.vertex(next_corner(corner)));
+      visit(mesh.vertex(previous_corner(corner)));
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+SectorPatch lone_face(const Connectivity& mesh, Index corner) {
+  SectorPatch sector;
+  sector.shape = SectorShape::Lone;
+  sector.center = mesh.wedge(corner);
+  sector.polygon = {mesh.wedge(next_corner(corner)), mesh.wedge(previous_corner(corner))};
+  sector.faces = {face_of_corner(corner)};
+  sector.rotation = {static_cast<std::uint8_t>(corner % 3)};
+  return sector;
+}
+
+}  // namespace
+
+std::vector<RemovalRecord> remove_component(Connectivity& mesh, Index vertex) {
+  const std::vector<Index> faces = component_faces(mesh, vertex);
+  std::vector<std::array<Index, 3>> corners;  // (site, vertex, corner): in this order copies stand together
+  for (const Index face : faces)
+    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner)
+      corners.push_back({mesh.site(mesh.vertex(corner)), mesh.vertex(corner), corner});
+  std::sort(corners.begin(), corners.end());
+  std::vector<RemovalRecord> records;
+  std::unordered_set<Index> gone;
+  for (const auto& [site, v, corner] : corners) {
+    if (records.empty() || records.back().vertex != v) {
+      RemovalRecord& record = records.emplace_back();
+      record.vertex = v;
+      record.vertex_corner = mesh.corner_at(v);
+      record.open_star = true;
+    }
+    if (gone.insert(face_of_corner(corner)).second) records.back().sectors.push_back(lone_face(mesh, corner));
+  }
+  // All copies of a vertex come last together, or none.
+  std::unordered_set<Index> with_faces;
+  for (const RemovalRecord& record : records)
+    if (!record.sectors.empty()) with_faces.insert(mesh.site(record.vertex));
+  std::stable_partition(records.begin(), records.end(),
+                        [&](const RemovalRecord& record) { return with_faces.contains(mesh.site(record.vertex)); });
+  const PatchAccess access{mesh};
+  for (const Index face : faces) access.kill_face(face);
+  for (const RemovalRecord& record : records) access.set_anchor(record.vertex, kNoIndex);
+  access.add_faces(-static_cast<std::ptrdiff_t>(faces.size()));
+  return records;
 }
 
 }  // namespace lodestone

@@ -245,7 +245,8 @@ class StreamDecoder {
   /// Appends the record's wedges and sectors.
   Result<void> read_connectivity(std::size_t record, ChunkValues& values) {
     const std::uint32_t wedge_count = values[kWedgeCounts].next(), sector_count = values[kSectorCounts].next();
-    if (wedge_count > kMaxWedgesPerRecord) return broken(text(wedge_count, " wedges"));
+    if (wedge_count > kMaxWedgesPerRecord || wedge_count > start_.header.wedge_count - mesh_.wedge_vertex.size())
+      return broken(text(wedge_count, " wedges"));
     if (sector_count > values[kPolygonSizes].left()) return broken("more sectors than there are");
     for (std::uint32_t s = 0; s < sector_count; ++s) LODESTONE_CHECK(read_sector(wedge_count, values));
     mesh_.sector_begin.push_back(static_cast<Index>(mesh_.sectors.size()));
@@ -258,12 +259,14 @@ class StreamDecoder {
   Result<void> read_sector(std::uint32_t wedge_count, ChunkValues& values) {
     const std::uint32_t size = values[kPolygonSizes].next(), group = values[kGroups].next(),
                         centre = values[kCentres].next();
-    const bool closed = (centre & 1) != 0;
-    if (size < (closed ? 3u : 2u) || size > kMaxPolygonSize) return broken(text("polygon of ", size, " corners"));
+    const std::uint32_t shapes = start_.directory.version_major == 1 ? 2 : 4;  // version 1 had two
+    const auto shape = static_cast<SectorShape>(centre % shapes);
+    if (size < (shape == SectorShape::Open || shape == SectorShape::Lone ? 2u : 3u) || size > kMaxPolygonSize)
+      return broken(text("polygon of ", size, " corners"));
     if (group >= mesh_.groups.size()) return broken(text("group ", group, " of ", mesh_.groups.size()));
-    if (centre / 2 >= wedge_count) return broken(text("wedge ", centre / 2, " of ", wedge_count));
+    if (centre / shapes >= wedge_count) return broken(text("wedge ", centre / shapes, " of ", wedge_count));
     mesh_.sectors.push_back({static_cast<std::uint16_t>(size), static_cast<std::uint16_t>(group),
-                             static_cast<std::uint8_t>(closed), static_cast<std::uint8_t>(centre / 2)});
+                             static_cast<std::uint16_t>(centre / shapes), shape});
     tracer_.begin(size);
     for (std::uint32_t i = 0; i + 2 < size; ++i) LODESTONE_CHECK(read_slot(group, i == 0, size, values));
     for (const Index wedge : tracer_.wedges())

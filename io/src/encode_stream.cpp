@@ -130,7 +130,7 @@ class RecordEncoder {
       const SectorHeader& sector = mesh_.sectors[s];
       put(kPolygonSizes, sector.polygon_size);
       put(kGroups, sector.group);
-      put(kCentres, 2u * sector.wedge + sector.closed);
+      put(kCentres, 4u * sector.wedge + static_cast<std::uint32_t>(sector.shape));
       if (!add_sector_faces(s))
         return fail(ErrorCode::InvalidArgument,
                     text("stream: record ", record, ": a polygon differs from the faces it covers"));

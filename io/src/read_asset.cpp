@@ -99,6 +99,7 @@ Result<void> read_numbers(const GltfDocument& document, std::size_t index, const
 Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, const Chains& chains) {
   Asset::Level level;
   LODESTONE_TRY(const SoupFile file, flatten_scene(document, index));
+  level.face_count = file.soup.indices.size() / 3;
   LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup));
   level.mesh = std::move(assembled.mesh);
 

@@ -243,7 +243,8 @@ class ObjReader {
     if (has_vertex_colors_) file_.notes.push_back("the vertex colours are left out");
     if (!materials_.empty())
       file_.notes.push_back(
-          text("what the ", materials_.size(), " materials look like is left out; faces keep apart by material"));
+          text("what ", materials_.size() == 1 ? "the material looks" : text(materials_.size(), " materials look"),
+               " like is left out; faces keep apart by material"));
   }
 
   struct Reference {

@@ -48,12 +48,15 @@ std::optional<std::size_t> find_column(std::vector<MeshColumn>& columns, const A
 
 /// Appends the attributes of points from number `first` on; where others lacked them before, they are zero.
 void append_columns(const std::vector<Attribute>& attributes, bool are_targets, std::size_t first,
-                    SourcePrimitive& described, MeshSource& source, TriangleSoup& soup) {
+                    SourcePrimitive& described, JoinedMesh& joined_mesh, TriangleSoup& soup) {
   for (const Attribute& attribute : attributes) {
-    const auto column = find_column(source.columns, attribute, are_targets);
-    if (!column) continue;
+    const auto column = find_column(joined_mesh.source.columns, attribute, are_targets);
+    if (!column) {
+      joined_mesh.left_out.push_back(attribute.name);
+      continue;
+    }
     described.columns.push_back(*column);
-    soup.attributes.resize(source.columns.size());
+    soup.attributes.resize(joined_mesh.source.columns.size());
     Attribute& joined = soup.attributes[*column];
     joined.data.resize(first * attribute.element_bytes());
     append_bytes(joined.data, attribute.data);
@@ -61,12 +64,12 @@ void append_columns(const std::vector<Attribute>& attributes, bool are_targets, 
 }
 
 /// Appends a primitive's points and triangles; columns that it lacks are filled up with zeros later.
-void append_primitive(const Primitive& primitive, MeshSource& source, TriangleSoup& soup) {
+void append_primitive(const Primitive& primitive, JoinedMesh& joined, TriangleSoup& soup) {
   const std::size_t first = soup.positions.size();
-  SourcePrimitive& described = source.primitives[primitive.number];
+  SourcePrimitive& described = joined.source.primitives[primitive.number];
   soup.positions.insert(soup.positions.end(), primitive.positions.begin(), primitive.positions.end());
-  append_columns(primitive.attributes, false, first, described, source, soup);
-  append_columns(primitive.targets, true, first, described, source, soup);
+  append_columns(primitive.attributes, false, first, described, joined, soup);
+  append_columns(primitive.targets, true, first, described, joined, soup);
   std::sort(described.columns.begin(), described.columns.end());
   for (const Index point : primitive.indices) soup.indices.push_back(static_cast<Index>(first + point));
   soup.face_material.insert(soup.face_material.end(), primitive.indices.size() / 3,
@@ -134,11 +137,11 @@ Result<std::optional<JoinedMesh>> join_primitives(const GltfDocument& document, 
     described.replaced = true;
     describe_targets(list[primitive.number], described);
     joined.mesh.has_targets |= described.target_count > 0;
-    append_primitive(primitive, joined.source, soup);
+    append_primitive(primitive, joined, soup);
   }
   complete_attributes(joined.source, soup);
   LODESTONE_TRY(AssembledMesh assembled, assemble(soup));
-  if (assembled.mesh.face_count() == 0) return std::optional<JoinedMesh>();
+  if (assembled.mesh.face_count() == 0 && soup.indices.empty()) return std::optional<JoinedMesh>();
   joined.mesh.name = string_member(*json, "name");
   joined.mesh.mesh = std::move(assembled.mesh);
   joined.mesh.assembly = assembled.report;

@@ -13,9 +13,10 @@ namespace lodestone::detail {
 struct JoinedMesh {
   SceneMesh mesh;
   MeshSource source;
+  std::vector<std::string> left_out;  ///< names of attributes of types that glTF vertices may not have
 };
 
-/// Joins the triangles of a mesh's primitives; nothing for a mesh without any that `assemble` keeps.
+/// Joins the triangles of a mesh's primitives; nothing for a mesh without any.
 /// Errors: Malformed, Unsupported; LimitExceeded where the attributes of all primitives together are out of proportion.
 Result<std::optional<JoinedMesh>> join_primitives(const GltfDocument& document, std::size_t mesh);
 

@@ -69,14 +69,21 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
   for (const auto& [number, nodes] : nodes_of) {
     LODESTONE_TRY(auto joined, join_primitives(scene.document, number));
     if (!joined) continue;
+    if (joined->mesh.mesh.face_count() == 0) {
+      scene.dropped.push_back(joined->mesh.assembly);
+      continue;
+    }
     joined->source.nodes = nodes;
+    for (const std::string& name : joined->left_out)
+      scene.notes.push_back(
+          text("mesh ", number, ": attribute ", name, " is left out: glTF vertices have no such type"));
     if (with_streams) {
       LODESTONE_TRY(joined->mesh.stream, read_stream(scene.document, number));
     }
     scene.meshes.push_back(std::move(joined->mesh));
     scene.sources.push_back(std::move(joined->source));
   }
-  if (scene.meshes.empty()) scene.notes.push_back(why_empty(scene.document));
+  if (scene.meshes.empty() && scene.dropped.empty()) scene.notes.push_back(why_empty(scene.document));
   return measure_instances(scene);
 }
 
@@ -140,7 +147,10 @@ Result<Scene> Scene::from_mesh(MeshFile file, const std::string& name) {
   const std::string json = placeholder_document(name, materials).dump(-1, ' ', false, Json::error_handler_t::replace);
   LODESTONE_TRY(scene->document, GltfDocument::parse(std::as_bytes(std::span(json)), nothing_beside));
   scene->notes = std::move(file.notes);
-  if (materials.empty()) return Scene(std::move(scene));
+  if (materials.empty()) {
+    scene->dropped.push_back(file.assembly);
+    return Scene(std::move(scene));
+  }
   MeshSource source = source_of(file.mesh, materials.size());
   source.nodes = {0};
   SceneMesh mesh;
@@ -183,6 +193,7 @@ Result<Scene> Scene::read_multi_lod_bytes(std::span<const std::byte> bytes) {
 }
 
 const std::vector<SceneMesh>& Scene::meshes() const { return impl_->meshes; }
+const std::vector<AssemblyReport>& Scene::dropped() const { return impl_->dropped; }
 const std::vector<std::string>& Scene::notes() const { return impl_->notes; }
 const Box& Scene::box() const { return impl_->box; }
 

@@ -79,9 +79,9 @@ Result<FixedHeader> check_fixed(std::span<const std::byte> bytes) {
   if (bytes.size() < kFixedHeaderBytes)
     return broken(text("ends inside its header after ", bytes.size(), " bytes"), bytes.size());
   const FixedHeader h = read_fixed(bytes);
-  if (h.major != kStreamMajor)
+  if (h.major == 0 || h.major > kStreamMajor)
     return fail(ErrorCode::Unsupported,
-                text("stream: version ", h.major, '.', h.minor, ", where ", kStreamMajor, " is known"), 8);
+                text("stream: version ", h.major, '.', h.minor, ", where 1 to ", kStreamMajor, " are known"), 8);
   if (h.encoding != kColumnEncoding)
     return fail(ErrorCode::Unsupported, text("stream: encoding ", h.encoding, " is not known"), 62);
   if (h.counts.group_count == 0 || h.counts.group_count > kMaxGroups || h.counts.attribute_count > kMaxAttributes)

@@ -14,7 +14,7 @@ namespace lodestone::detail {
 // The fixed parts of a removal stream; docs/stream-format.md is the description that counts.
 
 inline constexpr std::array<unsigned char, 8> kStreamMagic = {0x89, 'L', 'D', 'S', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint16_t kStreamMajor = 1;
+inline constexpr std::uint16_t kStreamMajor = 2;
 inline constexpr std::uint16_t kStreamMinor = 0;
 inline constexpr std::uint16_t kColumnEncoding = 1;  ///< how the chunks are coded: the only way so far
 
@@ -28,7 +28,7 @@ inline constexpr std::uint32_t kMaxGroups = 65536;
 inline constexpr std::uint32_t kMaxAttributes = 64;
 inline constexpr std::uint32_t kMaxNameBytes = 255;
 inline constexpr std::uint32_t kMaxPolygonSize = 256;
-inline constexpr std::uint32_t kMaxWedgesPerRecord = 256;
+inline constexpr std::uint32_t kMaxWedgesPerRecord = 65536;
 
 /// The header's fixed part, beside what StreamDirectory shows.
 struct StreamHeader {

@@ -168,13 +168,15 @@ void FaceReplay::find_outer(const ProgressiveMesh& mesh, Index sector, const Gro
 }
 
 /// Writes the fine faces and ties them to each other and to the faces across the polygon's edges. What meets at the two
-/// ends of an open sector stays unknown.
+/// ends of a sector that is not the whole ring stays unknown.
 void FaceReplay::place_fine_faces(const ProgressiveMesh& mesh, std::size_t record, Index s, Group& group) {
   const SectorHeader& sector = mesh.sectors[s];
   const Index* polygon = mesh.polygons.data() + mesh.polygon_begin[s];
   const Index* slots = mesh.slots.data() + mesh.slot_begin(s);
   const Index centre = mesh.record_wedge_begin[record] + sector.wedge;
-  const std::size_t size = sector.polygon_size, fine_count = sector.closed != 0 ? size : size - 1;
+  const std::size_t size = sector.polygon_size;
+  const std::size_t fine_count = size - 2 + static_cast<std::size_t>(appended_face_count(sector.shape));
+  const bool is_ring = sector.shape == SectorShape::Closed;
 
   fine_.assign(slots, slots + (size - 2));
   for (std::size_t i = size - 2; i < fine_count; ++i)
@@ -182,7 +184,7 @@ void FaceReplay::place_fine_faces(const ProgressiveMesh& mesh, std::size_t recor
   group.corners.resize(group.corners.size() + 3 * (fine_count - (size - 2)));
   group.neighbours.resize(group.corners.size(), kNoIndex);
   for (std::size_t i = 0; i < fine_count; ++i) {
-    const bool first = sector.closed == 0 && i == 0, last = sector.closed == 0 && i + 1 == fine_count;
+    const bool first = !is_ring && i == 0, last = !is_ring && i + 1 == fine_count;
     const std::array<Index, 3> face = {centre, polygon[i], polygon[(i + 1) % size]};  // the newest wedge comes first
     const std::array<Index, 3> across = {first ? kNoIndex : fine_[(i + fine_count - 1) % fine_count], outer_[i],
                                          last ? kNoIndex : fine_[(i + 1) % fine_count]};

@@ -23,7 +23,7 @@ enum RecordColumn : std::size_t {
   kSectorCounts,  ///< per record
   kPolygonSizes,  ///< per sector
   kGroups,        ///< per sector
-  kCentres,       ///< per sector: 2·wedge + closed
+  kCentres,       ///< per sector: 4·wedge + shape; in version 1: 2·wedge + closed
   kFirstSlots,    ///< per sector with slots
   kOtherSlots,    ///< per further slot: 0 where it is the expected one, else slot + 1
   kTriangles,     ///< three per slot

@@ -40,7 +40,7 @@ void Cursor::refine() {
     std::vector<Index>& corners = corners_[sector.group];
     const Index center = first_wedge + sector.wedge;
     const int size = sector.polygon_size;
-    const int fine_count = sector.closed != 0 ? size : size - 1;
+    const int fine_count = size - 2 + appended_face_count(sector.shape);
     const std::size_t kept_size = corners.size();
     corners.resize(kept_size + 3 * static_cast<std::size_t>(fine_count - (size - 2)));
     // The centre is the newest wedge of all, so it stands first.
@@ -64,7 +64,7 @@ void Cursor::coarsen() {
     const Index* slots = mesh_->slots.data() + mesh_->slot_begin(s);
     const std::uint8_t* triangle = mesh_->triangles.data() + 3 * mesh_->slot_begin(s);
     std::vector<Index>& corners = corners_[sector.group];
-    corners.resize(corners.size() - (sector.closed != 0 ? 6 : 3));
+    corners.resize(corners.size() - 3 * static_cast<std::size_t>(appended_face_count(sector.shape)));
     for (int i = 0; i + 2 < sector.polygon_size; ++i, triangle += 3)
       write_canonical(&corners[3 * std::size_t{slots[i]}], polygon[triangle[0]], polygon[triangle[1]],
                       polygon[triangle[2]]);

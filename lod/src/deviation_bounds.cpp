@@ -9,11 +9,8 @@
 namespace lodestone::detail {
 namespace {
 
-/// Rounds up to a float, so that a bound stays one.
-float round_up(double value) {
-  const auto f = static_cast<float>(value);
-  return static_cast<double>(f) < value ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
+// How far a piece that vanishes was from what is left is bounded roughly, so it is measured sooner.
+constexpr double kStepAfterVanishing = 0.01;
 
 DeviationOptions measuring_options() {
   DeviationOptions options;
@@ -41,6 +38,12 @@ Mesh current_level(const Mesh& full, const Connectivity& current) {
 
 }  // namespace
 
+/// Rounds up to a float, so that a bound stays one.
+float DeviationBounds::round_up(double value) {
+  const auto f = static_cast<float>(value);
+  return static_cast<double>(f) < value ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
 DeviationBounds::DeviationBounds(const Mesh& full, double step)
     : full_(&full),
       step_(step),
@@ -51,29 +54,53 @@ DeviationBounds::DeviationBounds(const Mesh& full, double step)
   bound_.reserve(full.vertex_count());
 }
 
-void DeviationBounds::add(const RemovalRecord& record) {
-  const double displacement = displacement_bound(*full_, record);
-  for (Chain* chain : {&since_measured_, &since_start_}) chain->add(record, displacement);
-  bound_.push_back(round_up(std::min(measured_ + since_measured_.largest, since_start_.largest)));
+void DeviationBounds::add(std::span<const RemovalRecord> copies) {
+  for (const RemovalRecord& record : copies) {
+    const double displacement = displacement_bound(*full_, record);
+    for (Chain* chain : {&since_measured_, &since_start_}) chain->add(record, displacement);
+  }
+  bound_.push_back(round_up(bound()));
 }
 
+void DeviationBounds::add_vanished(std::span<const RemovalRecord> records, Index face, double reach) {
+  for (Chain* chain : {&since_measured_, &since_start_}) chain->add_vanished(records, face, reach);
+  vanished_ = true;
+}
+
+/// What a sector's faces stood for moves with the new ones; where it has none, with those that lie at its new edge.
 void DeviationBounds::Chain::add(const RemovalRecord& record, double displacement) {
   float before = 0;
   for (const SectorPatch& sector : record.sectors)
     for (const Index face : sector.faces) before = std::max(before, moved[face]);
   const float after = round_up(static_cast<double>(before) + displacement);
-  for (const SectorPatch& sector : record.sectors)
+  for (const SectorPatch& sector : record.sectors) {
     for (std::size_t i = 0; i < sector.triangles.size(); ++i) moved[sector.faces[i]] = after;
+    if (sector.lone_outer == kNoIndex) continue;
+    float& beyond = moved[face_of_corner(sector.lone_outer)];
+    beyond = std::max(beyond, after);
+  }
+  largest = std::max(largest, static_cast<double>(after));
+}
+
+void DeviationBounds::Chain::add_vanished(std::span<const RemovalRecord> records, Index face, double reach) {
+  float before = 0;
+  for (const RemovalRecord& record : records)
+    for (const SectorPatch& sector : record.sectors)
+      for (const Index gone : sector.faces) before = std::max(before, moved[gone]);
+  const float after = round_up(static_cast<double>(before) + reach);
+  moved[face] = std::max(moved[face], after);
   largest = std::max(largest, static_cast<double>(after));
 }
 
 void DeviationBounds::end_round(const Connectivity& current) {
-  const auto threshold = static_cast<double>(measured_faces_) * (1 - step_);
-  if (!level_ || bound_.empty() || static_cast<double>(current.face_count()) > threshold) return;
+  const double step = vanished_ ? std::min(step_, kStepAfterVanishing) : step_;
+  const auto threshold = static_cast<double>(measured_faces_) * (1 - step);
+  if (!level_ || bound_.empty() || last_ > 0 || static_cast<double>(current.face_count()) > threshold) return;
   measured_ = level_->measure(current_level(*full_, current), since_measured_.largest).maximum_bound();
   measured_faces_ = current.face_count();
   since_measured_.reset();
-  bound_.back() = round_up(std::min(static_cast<double>(bound_.back()), measured_));
+  vanished_ = false;
+  if (last_ == 0) bound_.back() = round_up(std::min(static_cast<double>(bound_.back()), measured_));
 }
 
 }  // namespace lodestone::detail

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <lodestone/core/connectivity.h>
@@ -21,8 +22,14 @@ class DeviationBounds {
   /// Measures whenever a share `step` of the faces has gone since the last time; never where it is 0.
   DeviationBounds(const Mesh& full, double step);
 
-  /// Accounts for a removal that is about to be done.
-  void add(const RemovalRecord& record);
+  /// Accounts for the removal, just done, of a vertex and its copies.
+  void add(std::span<const RemovalRecord> copies);
+  /// Accounts for a piece that has vanished: all of it lies within `reach` of `face`, which is one of the faces left.
+  void add_vanished(std::span<const RemovalRecord> records, Index face, double reach);
+  /// Accounts for the last piece: nothing is left to measure a distance to, so the bound is the mesh's diagonal.
+  void add_last() { last_ = bounding_box(*full_).diagonal(); }
+  /// Gives the next vertex of the vanished pieces the bound that all of them together have.
+  void repeat() { bound_.push_back(round_up(bound())); }
   /// Ends a round: measures the mesh where enough has changed since the last time.
   void end_round(const Connectivity& current);
   /// The bound after the last removal, mesh units.
@@ -40,11 +47,17 @@ class DeviationBounds {
 
     explicit Chain(std::size_t face_count) : moved(face_count, 0) {}
     void add(const RemovalRecord& record, double displacement);
+    void add_vanished(std::span<const RemovalRecord> records, Index face, double reach);
     void reset() {
       std::fill(moved.begin(), moved.end(), 0.0F);
       largest = 0;
     }
   };
+
+  static float round_up(double value);
+  double bound() const {
+    return std::max(last_, std::min(measured_ + since_measured_.largest, since_start_.largest));
+  }
 
   const Mesh* full_;
   double step_;
@@ -53,6 +66,8 @@ class DeviationBounds {
   Chain since_measured_;
   Chain since_start_;
   double measured_ = 0;  // bound of the last measured mesh
+  bool vanished_ = false;  // whether a piece has since it was measured
+  double last_ = 0;      // > 0 once nothing is left
   std::vector<float> bound_;
 };
 

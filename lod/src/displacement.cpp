@@ -2,7 +2,8 @@
 // successive mappings (Visualization 1997). Both are projected to a plane; where neither folds there, the overlay of
 // their edges cuts them into cells on which both are linear, so the largest displacement stands at a corner of a cell:
 // at the removed vertex or where a spoke crosses a diagonal. On an open sector the removed vertex first slides to its
-// foot on the closing edge. Where the projection folds, a cruder map is bounded by edge lengths.
+// foot on the closing edge, on a moved one to the vertex it moves to. A star of several sectors may also be looked at as
+// one. Where the projection folds, a cruder map is bounded by edge lengths.
 
 #include "displacement.h"
 
@@ -28,36 +29,63 @@ double cross2(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// A sector's polygon and centre, in space and in the plane of projection.
+/// A sector's polygon, coarse faces and centre, in space and in the plane of projection; or those of a whole star.
 struct Overlay {
-  const SectorPatch& sector;
+  SectorShape shape;
   Vec3 center;
   Vec3 anchor;  // where the centre goes: itself, or its foot on the closing edge
+  std::vector<PolygonTriangle> triangles;
   std::vector<Vec3> ring;
   std::vector<Vec2> plane_ring;
   Vec2 plane_center;
 
+  std::size_t face_count() const { return shape == SectorShape::Closed ? ring.size() : ring.size() - 1; }
   std::size_t next(std::size_t i) const { return i + 1 < ring.size() ? i + 1 : 0; }
+  bool is_rim(std::size_t a, std::size_t b) const { return b == a + 1 || (a == 0 && b + 1 == ring.size()); }
 };
 
 Vec3 fine_normal(const Overlay& overlay) {
   Vec3 normal;
-  for (std::size_t i = 0; i < overlay.sector.face_count(); ++i)
+  for (std::size_t i = 0; i < overlay.face_count(); ++i)
     normal += cross(overlay.ring[i] - overlay.anchor, overlay.ring[overlay.next(i)] - overlay.anchor);
   return normal;
 }
 
 Vec3 coarse_normal(const Overlay& overlay) {
   Vec3 normal;
-  for (const PolygonTriangle t : overlay.sector.triangles)
+  for (const PolygonTriangle t : overlay.triangles)
     normal += normalized(cross(overlay.ring[t.b] - overlay.ring[t.a], overlay.ring[t.c] - overlay.ring[t.a]));
   return normal;
 }
 
 Overlay make_overlay(const Mesh& mesh, const SectorPatch& sector, const Vec3& center) {
-  Overlay overlay{sector, center, center, {}, {}, {}};
+  Overlay overlay{sector.shape, center, center, sector.triangles, {}, {}, {}};
   for (const Index wedge : sector.polygon) overlay.ring.push_back(Vec3(mesh.positions[mesh.wedge_vertex[wedge]]));
-  if (!sector.closed) overlay.anchor = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
+  if (sector.shape == SectorShape::Open)
+    overlay.anchor = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
+  return overlay;
+}
+
+/// All sectors of a star as one.
+Overlay make_overlay(const Mesh& mesh, const RemovalRecord& record, const Vec3& center) {
+  Overlay overlay{record.open_star ? SectorShape::Open : SectorShape::Closed, center, center, {}, {}, {}, {}};
+  std::vector<Index> ring;
+  for (const SectorPatch& sector : record.sectors)
+    for (std::size_t i = 0; i < sector.face_count(); ++i) ring.push_back(mesh.wedge_vertex[sector.polygon[i]]);
+  const SectorPatch& last = record.sectors.back();
+  if (record.open_star) ring.push_back(mesh.wedge_vertex[last.polygon[last.face_count()]]);
+  for (const Index v : ring) overlay.ring.push_back(Vec3(mesh.positions[v]));
+  const auto number_of = [&](Index wedge) {
+    return static_cast<std::uint8_t>(std::find(ring.begin(), ring.end(), mesh.wedge_vertex[wedge]) - ring.begin());
+  };
+  for (const SectorPatch& sector : record.sectors)
+    for (const PolygonTriangle t : sector.triangles) {
+      std::array<std::uint8_t, 3> c{number_of(sector.polygon[t.a]), number_of(sector.polygon[t.b]),
+                                    number_of(sector.polygon[t.c])};
+      std::sort(c.begin(), c.end());
+      overlay.triangles.push_back({c[0], c[1], c[2]});
+    }
+  if (record.open_star) overlay.anchor = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
   return overlay;
 }
 
@@ -73,9 +101,9 @@ void project(Overlay& overlay, const Vec3& direction) {
 }
 
 bool folds(const Overlay& overlay) {
-  for (std::size_t i = 0; i < overlay.sector.face_count(); ++i)
+  for (std::size_t i = 0; i < overlay.face_count(); ++i)
     if (!(cross2(overlay.plane_center, overlay.plane_ring[i], overlay.plane_ring[overlay.next(i)]) >= 0)) return true;
-  return std::any_of(overlay.sector.triangles.begin(), overlay.sector.triangles.end(), [&](PolygonTriangle t) {
+  return std::any_of(overlay.triangles.begin(), overlay.triangles.end(), [&](PolygonTriangle t) {
     return !(cross2(overlay.plane_ring[t.a], overlay.plane_ring[t.b], overlay.plane_ring[t.c]) > 0);
   });
 }
@@ -85,7 +113,7 @@ double center_displacement(const Overlay& overlay) {
   if (!(overlay.anchor == overlay.center)) return length(overlay.center - overlay.anchor);
   double best_inside = -std::numeric_limits<double>::infinity();
   Vec3 target;
-  for (const PolygonTriangle t : overlay.sector.triangles) {
+  for (const PolygonTriangle t : overlay.triangles) {
     const std::array<std::size_t, 3> c{t.a, t.b, t.c};
     const double area = cross2(overlay.plane_ring[c[0]], overlay.plane_ring[c[1]], overlay.plane_ring[c[2]]);
     std::array<double, 3> weight{};
@@ -121,10 +149,9 @@ double crossing_displacement(const Overlay& overlay, std::size_t spoke, std::siz
 double overlay_displacement(const Overlay& overlay) {
   double largest = center_displacement(overlay);
   const std::size_t size = overlay.ring.size();
-  for (const PolygonTriangle t : overlay.sector.triangles) {
+  for (const PolygonTriangle t : overlay.triangles) {
     for (const auto& [a, b] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.a, t.c}}) {
-      const bool is_rim = b == a + 1 || (a == 0 && b + 1U == size);
-      for (std::size_t spoke = 0; spoke < size && !is_rim; ++spoke)
+      for (std::size_t spoke = 0; spoke < size && !overlay.is_rim(a, b); ++spoke)
         if (spoke != a && spoke != b) largest = std::max(largest, crossing_displacement(overlay, spoke, a, b));
     }
   }
@@ -135,7 +162,7 @@ double overlay_displacement(const Overlay& overlay) {
 double length_bound(const Overlay& overlay) {
   double largest = 0;
   for (const Vec3& p : overlay.ring) largest = std::max(largest, length(p - overlay.center));
-  for (const PolygonTriangle t : overlay.sector.triangles)
+  for (const PolygonTriangle t : overlay.triangles)
     for (const auto& [a, b] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.a, t.c}})
       largest = std::max(largest, length(overlay.ring[a] - overlay.ring[b]));
   return largest;
@@ -148,7 +175,7 @@ Vec3f stored(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float
 Vec3 nearest_coarse_point(const Overlay& overlay) {
   Vec3 nearest;
   double best = std::numeric_limits<double>::infinity();
-  for (const PolygonTriangle t : overlay.sector.triangles) {
+  for (const PolygonTriangle t : overlay.triangles) {
     const Vec3 p = nearest_on_triangle(
         overlay.center, {stored(overlay.ring[t.a]), stored(overlay.ring[t.b]), stored(overlay.ring[t.c])});
     if (squared_length(p - overlay.center) < best) best = squared_length(p - overlay.center), nearest = p;
@@ -156,19 +183,27 @@ Vec3 nearest_coarse_point(const Overlay& overlay) {
   return nearest;
 }
 
-/// The least bound that some direction of projection gives, with the centre where it is or slid to its nearest point.
-double sector_bound(Overlay overlay) {
-  if (overlay.ring.size() == 2)
-    return std::sqrt(squared_distance_to_segment(overlay.center, overlay.ring[0], overlay.ring[1]));
+/// The least bound that some direction of projection gives, with the centre where it is or slid to its nearest point;
+/// infinity where every projection folds.
+double overlay_bound(Overlay overlay) {
+  if (overlay.triangles.empty()) return std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < 2; ++attempt) {
     for (const Vec3& direction : {fine_normal(overlay), coarse_normal(overlay)}) {
       project(overlay, direction);
       if (!folds(overlay)) return overlay_displacement(overlay);
     }
-    if (!overlay.sector.closed) break;
+    if (overlay.shape != SectorShape::Closed) break;
     overlay.anchor = nearest_coarse_point(overlay);
   }
-  return length_bound(overlay);
+  return std::numeric_limits<double>::infinity();
+}
+
+double sector_bound(const Mesh& mesh, const SectorPatch& sector, const Vec3& center) {
+  const Overlay overlay = make_overlay(mesh, sector, center);
+  if (overlay.ring.size() == 2)
+    return std::sqrt(squared_distance_to_segment(overlay.center, overlay.ring[0], overlay.ring[1]));
+  if (sector.shape == SectorShape::Moved) return length(center - overlay.ring.back());  // each face moves with its corner
+  return std::min(overlay_bound(overlay), length_bound(overlay));
 }
 
 }  // namespace
@@ -176,9 +211,9 @@ double sector_bound(Overlay overlay) {
 double displacement_bound(const Mesh& mesh, const RemovalRecord& record) {
   const Vec3 center(mesh.positions[record.vertex]);
   double largest = 0;
-  for (const SectorPatch& sector : record.sectors)
-    largest = std::max(largest, sector_bound(make_overlay(mesh, sector, center)));
-  return largest;
+  for (const SectorPatch& sector : record.sectors) largest = std::max(largest, sector_bound(mesh, sector, center));
+  if (record.sectors.size() == 1) return largest;
+  return std::min(largest, overlay_bound(make_overlay(mesh, record, center)));
 }
 
 }  // namespace lodestone::detail

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -18,13 +19,17 @@ class FeatureLines {
     const auto found = removed_.find(key(a, b));
     return found == removed_.end() ? none : found->second;
   }
-  /// Replaces the edges a–vertex and vertex–b by the edge a–b.
-  void merge(Index a, Index vertex, Index b) {
-    std::vector<Index> joined = take(a, vertex);
-    const std::vector<Index> second = take(vertex, b);
-    joined.push_back(vertex);
-    joined.insert(joined.end(), second.begin(), second.end());
-    removed_[key(a, b)] = std::move(joined);
+  /// Replaces the edges from `vertex` to `target` and to each of `others` by edges from `target` to each of the others.
+  void collapse(Index vertex, Index target, std::span<const Index> others) {
+    std::vector<Index> with_target = take(vertex, target);
+    for (const Index other : others) {
+      std::vector<Index> joined = take(vertex, other);
+      joined.push_back(vertex);
+      joined.insert(joined.end(), with_target.begin(), with_target.end());
+      with_target.clear();  // one line carries them on
+      std::vector<Index>& there = removed_[key(target, other)];
+      there.insert(there.end(), joined.begin(), joined.end());
+    }
   }
 
  private:

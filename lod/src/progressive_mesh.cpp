@@ -11,7 +11,26 @@ auto defect(const std::string& message) { return fail(ErrorCode::Malformed, mess
 
 std::string numbered(const char* thing, std::size_t i) { return std::string(thing) + " " + std::to_string(i); }
 
-Index appended_faces(const SectorHeader& sector) { return sector.closed != 0 ? 2 : 1; }
+Index appended_faces(const SectorHeader& sector) { return static_cast<Index>(appended_face_count(sector.shape)); }
+
+bool is_polygon_size(SectorShape shape, std::uint64_t size) {
+  switch (shape) {
+    case SectorShape::Open:
+      return size >= 2;
+    case SectorShape::Closed:
+    case SectorShape::Moved:
+      return size >= 3;
+    case SectorShape::Lone:
+      return size == 2;
+  }
+  return false;
+}
+
+/// Whether a record adds faces to a piece that is coming into being.
+bool adds_lone_faces(const ProgressiveMesh& mesh, Index record) {
+  const Index first = mesh.sector_begin[record];
+  return first < mesh.sector_begin[record + 1] && mesh.sectors[first].shape == SectorShape::Lone;
+}
 
 template <class T>
 Index coarsest_within(const std::vector<T>& errors, double limit) {
@@ -110,7 +129,7 @@ Result<void> check_sector(const ProgressiveMesh& mesh, std::size_t record, std::
   const SectorHeader& sector = mesh.sectors[s];
   const std::string name = numbered("record", record);
   const std::uint64_t size = mesh.polygon_begin[s + 1] - mesh.polygon_begin[s];
-  if (size != sector.polygon_size || size < (sector.closed != 0 ? 3U : 2U) || sector.closed > 1)
+  if (size != sector.polygon_size || !is_polygon_size(sector.shape, size))
     return defect(name + " has a polygon of " + std::to_string(size) + " corners");
   if (sector.group >= mesh.groups.size()) return defect(name + " names " + numbered("group", sector.group));
   if (sector.wedge >= mesh.record_wedge_begin[record + 1] - mesh.record_wedge_begin[record])
@@ -158,6 +177,11 @@ std::vector<Index> face_counts(const ProgressiveMesh& mesh) {
   return counts;
 }
 
+bool is_whole(const ProgressiveMesh& mesh, Index position) {
+  return position == 0 || position == mesh.record_count() || !adds_lone_faces(mesh, position - 1) ||
+         !adds_lone_faces(mesh, position);
+}
+
 Index position_for_deviation(const ProgressiveMesh& mesh, double deviation) {
   return coarsest_within(mesh.deviation, deviation);
 }
@@ -169,7 +193,10 @@ Index position_for_curvature_error(const ProgressiveMesh& mesh, double epsilon) 
 Index position_for_faces(const ProgressiveMesh& mesh, std::uint64_t face_count) {
   const std::vector<Index> counts = face_counts(mesh);
   const auto beyond = std::upper_bound(counts.begin(), counts.end(), face_count);
-  return beyond == counts.begin() ? 0 : static_cast<Index>(beyond - counts.begin() - 1);
+  auto position = beyond == counts.begin() ? Index{0} : static_cast<Index>(beyond - counts.begin() - 1);
+  while (!is_whole(mesh, position)) --position;
+  while (position > 0 && counts[position - 1] == counts[position]) --position;  // vertices of a piece yet to come
+  return position;
 }
 
 Result<void> validate(const ProgressiveMesh& mesh) {

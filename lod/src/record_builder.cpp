@@ -19,12 +19,13 @@ struct RecordBuilder::Numbering {
   std::vector<Index> wedge;
   std::vector<Index> face;
   std::vector<Index> source_wedge;  // by new number
-  std::vector<Index> wedge_begin;   // by vertex of the full mesh: its wedges in vertex_wedges
+  std::vector<Index> wedge_begin;   // by vertex of the full mesh, the first of its copies: all their wedges in vertex_wedges
   std::vector<Index> vertex_wedges;
   std::vector<Index> group_face_count;
 };
 
-RecordBuilder::RecordBuilder(const Mesh& mesh) : mesh_(&mesh), materials_(mesh.face_material) {
+RecordBuilder::RecordBuilder(const Mesh& mesh, const Connectivity& connectivity)
+    : mesh_(&mesh), connectivity_(&connectivity), materials_(mesh.face_material) {
   std::sort(materials_.begin(), materials_.end());
   materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
   if (materials_.empty()) materials_.push_back(0);
@@ -37,7 +38,7 @@ void RecordBuilder::reserve(std::size_t record_count) {
   curvature_error_.reserve(record_count);
   sector_begin_.reserve(record_count + 1);
   center_.reserve(record_count);
-  closed_.reserve(record_count);
+  shape_.reserve(record_count);
   polygon_begin_.reserve(record_count + 1);
   face_begin_.reserve(record_count + 1);
   polygons_.reserve(kUsualRing * record_count);
@@ -50,17 +51,19 @@ Index RecordBuilder::group_of(Index face) const {
   return static_cast<Index>(found - materials_.begin());
 }
 
-void RecordBuilder::add(const RemovalRecord& record, double curvature_error) {
-  vertex_.push_back(record.vertex);
+void RecordBuilder::add(std::span<const RemovalRecord> copies, double curvature_error) {
+  vertex_.push_back(connectivity_->site(copies.front().vertex));
   curvature_error_.push_back(static_cast<float>(curvature_error));
-  for (const SectorPatch& sector : record.sectors) {
-    center_.push_back(sector.center);
-    closed_.push_back(sector.closed ? 1 : 0);
-    polygons_.insert(polygons_.end(), sector.polygon.begin(), sector.polygon.end());
-    polygon_begin_.push_back(static_cast<Index>(polygons_.size()));
-    faces_.insert(faces_.end(), sector.faces.begin(), sector.faces.end());
-    face_begin_.push_back(static_cast<Index>(faces_.size()));
-    triangles_.insert(triangles_.end(), sector.triangles.begin(), sector.triangles.end());
+  for (const RemovalRecord& record : copies) {
+    for (const SectorPatch& sector : record.sectors) {
+      center_.push_back(sector.center);
+      shape_.push_back(sector.shape);
+      polygons_.insert(polygons_.end(), sector.polygon.begin(), sector.polygon.end());
+      polygon_begin_.push_back(static_cast<Index>(polygons_.size()));
+      faces_.insert(faces_.end(), sector.faces.begin(), sector.faces.end());
+      face_begin_.push_back(static_cast<Index>(faces_.size()));
+      triangles_.insert(triangles_.end(), sector.triangles.begin(), sector.triangles.end());
+    }
   }
   sector_begin_.push_back(static_cast<Index>(center_.size()));
 }
@@ -69,22 +72,25 @@ void RecordBuilder::end_round() {
   if (round_end_.empty() ? !vertex_.empty() : round_end_.back() < vertex_.size()) round_end_.push_back(vertex_.size());
 }
 
+/// Lists the wedges of every vertex, those of its copies included.
 void RecordBuilder::list_wedges(Numbering& numbers) const {
+  const auto site_of = [&](Index wedge) { return connectivity_->site(mesh_->wedge_vertex[wedge]); };
   numbers.wedge_begin.assign(mesh_->vertex_count() + 1, 0);
-  for (const Index vertex : mesh_->wedge_vertex) ++numbers.wedge_begin[vertex + 1];
+  for (Index w = 0; w < mesh_->wedge_count(); ++w) ++numbers.wedge_begin[site_of(w) + 1];
   std::partial_sum(numbers.wedge_begin.begin(), numbers.wedge_begin.end(), numbers.wedge_begin.begin());
   std::vector<Index> next(numbers.wedge_begin.begin(), numbers.wedge_begin.end() - 1);
   numbers.vertex_wedges.resize(mesh_->wedge_count());
-  for (Index w = 0; w < mesh_->wedge_count(); ++w) numbers.vertex_wedges[next[mesh_->wedge_vertex[w]]++] = w;
+  for (Index w = 0; w < mesh_->wedge_count(); ++w) numbers.vertex_wedges[next[site_of(w)]++] = w;
 }
 
-void RecordBuilder::number_base(const Connectivity& base, ProgressiveMesh& result, Numbering& numbers) const {
+void RecordBuilder::number_base(ProgressiveMesh& result, Numbering& numbers) const {
+  const Connectivity& base = *connectivity_;
   numbers.vertex.assign(mesh_->vertex_count(), kNoIndex);
   numbers.wedge.assign(mesh_->wedge_count(), kNoIndex);
   numbers.face.assign(mesh_->face_count(), kNoIndex);
   numbers.group_face_count.assign(materials_.size(), 0);
   for (Index v = 0; v < mesh_->vertex_count(); ++v) {
-    if (!base.has_vertex(v)) continue;
+    if (!base.has_vertex(v) || base.site(v) != v) continue;
     numbers.vertex[v] = static_cast<Index>(result.positions.size());
     result.positions.push_back(mesh_->positions[v]);
   }
@@ -123,7 +129,7 @@ void RecordBuilder::number_record(std::size_t removal, ProgressiveMesh& result, 
   };
   for (std::size_t s = sector_begin_[removal]; s < sector_begin_[removal + 1]; ++s) {
     number_wedge(center_[s]);
-    const std::size_t kept = polygon_begin_[s + 1] - polygon_begin_[s] - 2;
+    const std::size_t kept = std::size_t{polygon_begin_[s + 1] - polygon_begin_[s]} - 2;
     for (std::size_t i = face_begin_[s] + kept; i < face_begin_[s + 1]; ++i)
       numbers.face[faces_[i]] = numbers.group_face_count[group_of(faces_[i])]++;
   }
@@ -139,8 +145,8 @@ void RecordBuilder::write_record(std::size_t removal, ProgressiveMesh& result, c
     SectorHeader header;
     header.polygon_size = static_cast<std::uint16_t>(size);
     header.group = static_cast<std::uint16_t>(group_of(faces_[face_begin_[s]]));
-    header.closed = closed_[s];
-    header.wedge = static_cast<std::uint8_t>(numbers.wedge[center_[s]] - first_wedge);
+    header.shape = shape_[s];
+    header.wedge = static_cast<std::uint16_t>(numbers.wedge[center_[s]] - first_wedge);
     result.sectors.push_back(header);
     for (std::size_t i = 0; i < size; ++i) result.polygons.push_back(numbers.wedge[polygons_[polygon_begin_[s] + i]]);
     result.polygon_begin.push_back(result.polygons.size());
@@ -182,11 +188,11 @@ void RecordBuilder::copy_attributes(ProgressiveMesh& result, const Numbering& nu
   }
 }
 
-ProgressiveMesh RecordBuilder::finish(const Connectivity& base, const std::vector<float>& deviation) {
+ProgressiveMesh RecordBuilder::finish(const std::vector<float>& deviation) {
   ProgressiveMesh result;
   Numbering numbers;
   list_wedges(numbers);
-  number_base(base, result, numbers);
+  number_base(result, numbers);
   result.sector_begin.push_back(0);
   result.polygon_begin.push_back(0);
   result.record_wedge_begin.push_back(result.base_wedge_count);

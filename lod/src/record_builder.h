@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <lodestone/core/connectivity.h>
@@ -11,28 +12,31 @@ namespace lodestone::detail {
 /// Collects removals as they happen and turns them into a progressive mesh, renumbered in order of creation.
 class RecordBuilder {
  public:
-  explicit RecordBuilder(const Mesh& mesh);
+  /// `connectivity` tells which vertices are copies of one another; both outlive the builder.
+  RecordBuilder(const Mesh& mesh, const Connectivity& connectivity);
 
-  void add(const RemovalRecord& record, double curvature_error);
+  /// Adds the removal of a vertex: one record for each of its copies.
+  void add(std::span<const RemovalRecord> copies, double curvature_error);
   /// Ends the round that the removals since the last call belong to.
   void end_round();
   std::size_t size() const { return vertex_.size(); }
 
-  /// Builds the result; `base` is what the removals left, `deviation` holds one entry for each removal, in order.
-  ProgressiveMesh finish(const Connectivity& base, const std::vector<float>& deviation);
+  /// Builds the result, with what the removals left as its base; `deviation` holds one entry for each removal, in order.
+  ProgressiveMesh finish(const std::vector<float>& deviation);
 
  private:
   struct Numbering;
   void reserve(std::size_t record_count);
   Index group_of(Index face) const;
   void list_wedges(Numbering& numbers) const;
-  void number_base(const Connectivity& base, ProgressiveMesh& result, Numbering& numbers) const;
+  void number_base(ProgressiveMesh& result, Numbering& numbers) const;
   void number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const;
   void write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const;
   void write_errors(ProgressiveMesh& result, const std::vector<float>& deviation) const;
   void copy_attributes(ProgressiveMesh& result, const Numbering& numbers) const;
 
   const Mesh* mesh_;
+  const Connectivity* connectivity_;
   std::vector<Index> materials_;  // of the groups, ascending
 
   // In order of removal, with the numbers of the full mesh.
@@ -41,7 +45,7 @@ class RecordBuilder {
   std::vector<std::size_t> round_end_;
   std::vector<Index> sector_begin_{0};
   std::vector<Index> center_;
-  std::vector<std::uint8_t> closed_;
+  std::vector<SectorShape> shape_;
   std::vector<Index> polygon_begin_{0};
   std::vector<Index> polygons_;
   std::vector<Index> face_begin_{0};

@@ -12,15 +12,17 @@
 #include <limits>
 #include <numeric>
 
+#include "triangle.h"
+
 namespace lodestone::detail {
 namespace {
 
 constexpr double kMinNormalCosine = 0.2;      // a new face may turn this far from the old one at its rim
 constexpr double kMinShape = 1e-3;            // a new face's height over its longest edge
-constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured      //
-                                              // triangulations, by swept volume, that are measured in full
+constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured
 constexpr double kBridgeWeight = 3;           // of new surface where the star had none, against distances of points
-constexpr double kLineWeight = 1;             // of a border or feature line that moves
+constexpr double kLineWeight = 1;             // of a border, material border or crease that moves
+constexpr double kSeamWeight = 0.1;           // of a seam that moves: what counts there is the price of the attributes
 constexpr double kTieBreak = 0.2;             // weight of the volume swept, as a length, against a pure curvature error
 constexpr double kMinCurvatureChange = 1e-4;  // radians; below it curvature no longer separates removals
 
@@ -32,61 +34,156 @@ bool rejects(Verdict verdict) { return verdict != Verdict::Legal; }
 
 }  // namespace
 
+double hybrid_cost(double moved, double turned) {
+  return std::pow(moved, kDistanceExponent) * std::pow(std::max(turned, kMinCurvatureChange), 1 - kDistanceExponent);
+}
+
 RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options)
-    : state_(&state), options_(&options), ring_of_vertex_(state.mesh.vertex_count(), kNoIndex) {
+    : state_(&state),
+      options_(&options),
+      attributes_(state.mesh, options.weights),
+      ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
   table_.resize(kTriangleNumberCount);
   // Ties are broken on the metric's own scale: K̄ is an angle, the others are lengths.
   const double diagonal = bounding_box(state.mesh).diagonal();
   tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
+  const Mesh& mesh = state.mesh;
+  if (mesh.wedge_count() == mesh.vertex_count()) return;
+  wedge_begin_.assign(mesh.vertex_count() + 1, 0);
+  for (const Index vertex : mesh.wedge_vertex) ++wedge_begin_[vertex + 1];
+  std::partial_sum(wedge_begin_.begin(), wedge_begin_.end(), wedge_begin_.begin());
+  std::vector<Index> next(wedge_begin_.begin(), wedge_begin_.end() - 1);
+  vertex_wedges_.resize(mesh.wedge_count());
+  for (Index w = 0; w < mesh.wedge_count(); ++w) vertex_wedges_[next[mesh.wedge_vertex[w]]++] = w;
 }
 
-Evaluation RemovalEvaluator::evaluate(Index vertex, RemovalRecord& record, Choice& choice) {
-  if (const Verdict verdict = gather(vertex, record); rejects(verdict)) return {verdict};
+Evaluation RemovalEvaluator::evaluate(Index vertex, Removal& removal, Choice& choice) {
+  if (state_->connectivity.is_copy(vertex)) return evaluate_copies(vertex, removal, choice);
+  removal.resize(1);
+  if (const Verdict verdict = gather(vertex); rejects(verdict)) return {verdict};
+  const VertexKind kind = state_->connectivity.kind(vertex, star_);
+  if (kind == VertexKind::Corner) return evaluate_corner(removal.front(), choice);
+  return evaluate_hole(removal.front(), choice);
+}
+
+Evaluation RemovalEvaluator::evaluate_hole(RemovalRecord& record, Choice& choice) {
+  describe_removal(state_->connectivity, star_, record);
+  take_sectors(record, 0);
   if (const Verdict verdict = check_closing_edge(); rejects(verdict)) return {verdict};
   for (std::size_t s = 0; s < sectors_.size(); ++s)
     if (const Verdict verdict = choose(sectors_[s], record.sectors[s], choice[s]); rejects(verdict)) return {verdict};
-  return combine(vertex, record);
+  return combine(record);
 }
 
-Verdict RemovalEvaluator::gather(Index vertex, RemovalRecord& record) {
+/// Tries the spokes a corner may move along: the constrained ones, and the others where none of those will do.
+Evaluation RemovalEvaluator::evaluate_corner(RemovalRecord& record, Choice& choice) {
+  if (choice[0] != kNoChoice && is_target(choice[0])) {
+    const Evaluation again = evaluate_collapse(choice[0], record);
+    if (!rejects(again.verdict)) return again;
+  }
+  Evaluation best{Verdict::Flip};
+  for (const bool constrained : {true, false}) {
+    for (std::size_t spoke = 0; spoke < ring_size(); ++spoke) {
+      if (!is_target(spoke) || is_constrained_spoke(spoke) != constrained) continue;
+      const Evaluation found = evaluate_collapse(spoke, trial_);
+      if (rejects(found.verdict)) {
+        if (rejects(best.verdict)) best.verdict = found.verdict;
+        continue;
+      }
+      if (!rejects(best.verdict) && best.cost <= found.cost) continue;
+      best = found;
+      choice[0] = static_cast<std::uint8_t>(spoke);
+      std::swap(record, trial_);
+    }
+    if (!rejects(best.verdict)) break;
+  }
+  return best;
+}
+
+/// Tries the places that the first copy may move to, for all copies at once.
+Evaluation RemovalEvaluator::evaluate_copies(Index vertex, Removal& removal, Choice& choice) {
+  if (const Verdict verdict = gather(vertex); rejects(verdict)) return {verdict};
+  std::vector<std::pair<std::size_t, Index>> targets;
+  for (std::size_t spoke = 0; spoke < ring_size(); ++spoke)
+    if (is_target(spoke)) targets.emplace_back(spoke, state_->connectivity.site(ring_vertex_[spoke]));
+  Evaluation best{Verdict::Flip};
+  for (const auto& [spoke, site] : targets) {
+    if (choice[0] != kNoChoice && choice[0] != spoke) continue;
+    const Evaluation found = evaluate_copies_at(vertex, site, trial_copies_);
+    if (rejects(found.verdict)) {
+      if (rejects(best.verdict)) best.verdict = found.verdict;
+      continue;
+    }
+    if (!rejects(best.verdict) && best.cost <= found.cost) continue;
+    best = found;
+    choice[0] = static_cast<std::uint8_t>(spoke);
+    std::swap(removal, trial_copies_);
+  }
+  return best;
+}
+
+Evaluation RemovalEvaluator::evaluate_copies_at(Index vertex, Index target_site, Removal& removal) {
+  const Connectivity& mesh = state_->connectivity;
+  removal.clear();
+  Evaluation sum{Verdict::Legal};
+  for (Index copy = vertex;;) {
+    if (const Verdict verdict = gather(copy); rejects(verdict)) return {verdict};
+    std::size_t spoke = 0;
+    while (spoke < ring_size() && mesh.site(ring_vertex_[spoke]) != target_site) ++spoke;
+    if (spoke == ring_size() || !is_target(spoke)) return {Verdict::Link};  // a sheet that does not reach there
+    const Evaluation evaluation = evaluate_collapse(spoke, removal.emplace_back());
+    if (rejects(evaluation.verdict)) return evaluation;
+    sum.cost += evaluation.cost;
+    sum.curvature_error = std::max(sum.curvature_error, evaluation.curvature_error);
+    copy = mesh.next_copy(copy);
+    if (copy == vertex) return sum;
+  }
+}
+
+Evaluation RemovalEvaluator::evaluate_collapse(std::size_t target, RemovalRecord& record) {
+  const Connectivity& mesh = state_->connectivity;
+  if (star_.is_plain()) {
+    describe_removal(mesh, star_, record);
+  } else {
+    describe_collapse(mesh, star_, static_cast<Index>(target), record);
+    for (SectorPatch& sector : record.sectors)
+      if (sector.shape == SectorShape::Moved) sector.polygon.back() = best_wedge(ring_vertex_[target], sector.center);
+  }
+  take_sectors(record, target);
+  if (const Verdict verdict = check_target(target); rejects(verdict)) return {verdict};
+  for (std::size_t s = 0; s < sectors_.size(); ++s)
+    if (const Verdict verdict = fill_with_fan(sectors_[s], record.sectors[s], target); rejects(verdict))
+      return {verdict};
+  return combine(record);
+}
+
+/// Looks at everything around the vertex that does not depend on how its hole is filled.
+Verdict RemovalEvaluator::gather(Index vertex) {
   const Connectivity& mesh = state_->connectivity;
   mesh.gather_star(vertex, star_);
   if (star_.corners.size() > kMaxRing) return Verdict::Ring;
   if (star_.closed && star_.corners.size() < 3) return Verdict::Link;  // two faces back to back: no hole to fill
-  const VertexKind kind = mesh.kind(vertex, star_);
-  if (kind != VertexKind::Interior && kind != VertexKind::Border && kind != VertexKind::Feature) return Verdict::Locked;
-  record.vertex = vertex;
-  describe_sectors(mesh, star_, record.sectors);
+  if (!star_.closed && options_->lock_border && !mesh.is_copy(vertex)) return Verdict::Locked;
   center_ = Vec3(state_->mesh.positions[vertex]);
-  gather_ring(record);
-  gather_normals(record);
+  gather_ring();
+  gather_normals();
   if (!gather_links(vertex)) return Verdict::Link;
   gather_outside_curvature();
   return Verdict::Legal;
 }
 
-void RemovalEvaluator::gather_ring(const RemovalRecord& record) {
+void RemovalEvaluator::gather_ring() {
+  const Connectivity& mesh = state_->connectivity;
   ring_vertex_.clear();
   ring_position_.clear();
-  sectors_.clear();
-  for (const SectorPatch& patch : record.sectors) {
-    Sector& sector = sectors_.emplace_back();
-    sector.patch = &patch;
-    sector.ring_begin = ring_vertex_.size();
-    // The last corner of an open sector is the first of the next one; only a border keeps it.
-    const bool shares_last = record.sectors.size() > 1;
-    const std::size_t own = patch.polygon.size() - (shares_last ? 1 : 0);
-    for (std::size_t i = 0; i < own; ++i) {
-      const Index v = state_->connectivity.vertex_of_wedge(patch.polygon[i]);
-      ring_vertex_.push_back(v);
-      ring_position_.push_back(Vec3(state_->mesh.positions[v]));
-    }
-  }
+  for (const Index corner : star_.corners) ring_vertex_.push_back(mesh.vertex(next_corner(corner)));
+  if (!star_.closed) ring_vertex_.push_back(mesh.vertex(previous_corner(star_.corners.back())));
+  for (const Index v : ring_vertex_) ring_position_.push_back(Vec3(state_->mesh.positions[v]));
 }
 
-void RemovalEvaluator::gather_normals(const RemovalRecord& record) {
+void RemovalEvaluator::gather_normals() {
   const Connectivity& mesh = state_->connectivity;
   fine_corner_ = star_.corners;
   fine_normal_.resize(fine_corner_.size());
@@ -101,43 +198,145 @@ void RemovalEvaluator::gather_normals(const RemovalRecord& record) {
     has_outer_[i] = outer != kNoIndex ? 1 : 0;
     if (needs_dihedrals_ && outer != kNoIndex) outer_normal_[i] = cross(a - b, corner_position(outer) - b);
   }
-  for (std::size_t s = 0; s < sectors_.size(); ++s) {
-    sectors_[s].normal = {};
-    for (std::size_t i = 0; i < record.sectors[s].face_count(); ++i)
-      sectors_[s].normal += fine_normal_[sectors_[s].ring_begin + i];
-  }
 }
 
-/// Notes which ring vertices an edge joins; false where the ring meets itself or a face lies over the star.
+/// Notes which ring vertices an edge joins, in any sheet; false where the ring meets itself or a face lies over the star.
 bool RemovalEvaluator::gather_links(Index vertex) {
   const Connectivity& mesh = state_->connectivity;
   bool simple = true;
   for (Index i = 0; i < ring_size(); ++i) {
-    simple = simple && ring_of_vertex_[ring_vertex_[i]] == kNoIndex;
-    ring_of_vertex_[ring_vertex_[i]] = i;
+    Index& ring = ring_of_site_[mesh.site(ring_vertex_[i])];
+    simple = simple && ring == kNoIndex;
+    ring = i;
   }
   linked_.assign(ring_size() * ring_size(), 0);
   const auto link = [&](Index from, Index to_vertex) {
-    const Index to = ring_of_vertex_[to_vertex];
+    const Index to = ring_of_site_[mesh.site(to_vertex)];
     if (to != kNoIndex) linked_[from * ring_size() + to] = linked_[to * ring_size() + from] = 1;
   };
-  for (Index i = 0; i < ring_size() && ring_size() > 2; ++i) {
-    const Index start = mesh.corner_at(ring_vertex_[i]);
+  const auto link_all = [&](Index from, Index at) {
+    const Index start = mesh.corner_at(at);
+    if (start == kNoIndex) return;
     Index corner = start;
     for (Index left = start; left != kNoIndex;) {
       corner = left;
-      link(i, mesh.vertex(next_corner(corner)));
+      link(from, mesh.vertex(next_corner(corner)));
       left = mesh.swing_left(corner);
       if (left == start) break;
     }
-    link(i, mesh.vertex(previous_corner(corner)));  // at a border no other corner has seen it
+    link(from, mesh.vertex(previous_corner(corner)));  // at a border no other corner has seen it
+  };
+  for (Index i = 0; i < ring_size() && ring_size() > 2; ++i) {
+    link_all(i, ring_vertex_[i]);
+    for (Index copy = mesh.next_copy(ring_vertex_[i]); copy != ring_vertex_[i]; copy = mesh.next_copy(copy))
+      link_all(i, copy);
   }
-  for (const Index v : ring_vertex_) ring_of_vertex_[v] = kNoIndex;
+  for (const Index v : ring_vertex_) ring_of_site_[mesh.site(v)] = kNoIndex;
   if (ring_size() == 3 && star_.closed) {
-    const Index outer = mesh.opposite(fine_corner_[0]);
-    simple = simple && !(outer != kNoIndex && mesh.vertex(outer) == ring_vertex_[2]);
+    simple = simple && !has_face_over_ring();
   }
   return simple && ring_vertex_[0] != vertex;
+}
+
+/// Whether a face joins the three vertices of the ring, in any sheet.
+bool RemovalEvaluator::has_face_over_ring() const {
+  const Connectivity& mesh = state_->connectivity;
+  const auto site = [&](std::size_t i) { return mesh.site(ring_vertex_[i]); };
+  for (Index copy = ring_vertex_[0];;) {
+    const Index start = mesh.corner_at(copy);
+    for (Index corner = start; corner != kNoIndex;) {
+      const Index a = mesh.site(mesh.vertex(next_corner(corner)));
+      const Index b = mesh.site(mesh.vertex(previous_corner(corner)));
+      if ((a == site(1) && b == site(2)) || (a == site(2) && b == site(1))) return true;
+      corner = mesh.swing_left(corner);
+      if (corner == start) break;
+    }
+    copy = mesh.next_copy(copy);
+    if (copy == ring_vertex_[0]) return false;
+  }
+}
+
+/// Whether the vertex may move along a spoke at all: a border vertex only along the border, and a vertex at which one
+/// line ends not along that line, which would have nowhere to end.
+bool RemovalEvaluator::is_target(std::size_t spoke) const {
+  if (spoke >= ring_size()) return false;
+  if (!star_.closed) return spoke == 0 || spoke + 1 == ring_size();
+  return star_.is_plain() || star_.sector_count() > 1 || spoke != 0;
+}
+
+bool RemovalEvaluator::is_constrained_spoke(std::size_t spoke) const {
+  if (!star_.closed && spoke + 1 == ring_size()) return true;
+  return star_.starts_constrained &&
+         std::binary_search(star_.sector_begin.begin(), star_.sector_begin.end(), static_cast<Index>(spoke));
+}
+
+/// Seams weigh little: what a seam's displacement does is in the price of the attributes.
+double RemovalEvaluator::line_weight(std::size_t spoke) const {
+  if (!star_.closed && (spoke == 0 || spoke + 1 == ring_size())) return kLineWeight;
+  const Connectivity& mesh = state_->connectivity;
+  const Index after = star_.corners[spoke];
+  const Index before = star_.corners[spoke > 0 ? spoke - 1 : star_.corners.size() - 1];
+  if (mesh.is_crease(previous_corner(after))) return kLineWeight;
+  return mesh.material(face_of_corner(after)) != mesh.material(face_of_corner(before)) ? kLineWeight : kSeamWeight;
+}
+
+/// The wedge of `vertex` whose attributes are most like those of another.
+Index RemovalEvaluator::best_wedge(Index vertex, Index like) const {
+  if (wedge_begin_.empty()) return vertex;  // never: without seams there are no corners that move
+  AttributeScale scale{1, std::vector<double>(attributes_.texture_count(), 1), {}};
+  Index best = vertex_wedges_[wedge_begin_[vertex]];
+  double least = std::numeric_limits<double>::infinity();
+  for (Index i = wedge_begin_[vertex]; i < wedge_begin_[vertex + 1]; ++i) {
+    const Index wedge = vertex_wedges_[i];
+    const double difference = attributes_.squared_difference(like, {{wedge, wedge, wedge}, {1, 0, 0}}, scale);
+    if (difference < least) least = difference, best = wedge;
+  }
+  return best;
+}
+
+/// Lays out the record's sectors in ring terms; `target` is the spoke that moved sectors end at.
+void RemovalEvaluator::take_sectors(RemovalRecord& record, std::size_t target) {
+  sectors_.clear();
+  std::size_t ring_begin = 0;
+  for (const SectorPatch& patch : record.sectors) {
+    Sector& sector = sectors_.emplace_back();
+    sector.patch = &patch;
+    sector.ring_begin = ring_begin;
+    sector.target = target;
+    for (std::size_t i = 0; i < patch.face_count(); ++i) sector.normal += fine_normal_[ring_begin + i];
+    if (!attributes_.empty()) sector.scale = attribute_scale(patch, ring_begin);
+    ring_begin += patch.face_count();
+  }
+  take_lines(target);
+}
+
+/// Lists the lines that move: from the target to the far end of every other constrained spoke.
+void RemovalEvaluator::take_lines(std::size_t target) {
+  lines_.clear();
+  for (std::size_t spoke = 0; spoke < ring_size(); ++spoke)
+    if (spoke != target && is_constrained_spoke(spoke))
+      lines_.push_back({target, spoke, line_weight(spoke), lines_.empty() && is_constrained_spoke(target)});
+}
+
+AttributeScale RemovalEvaluator::attribute_scale(const SectorPatch& patch, std::size_t ring_begin) const {
+  AttributeScale scale;
+  double area = 0;
+  for (std::size_t i = 0; i < patch.face_count(); ++i) area += 0.5 * length(fine_normal_[ring_begin + i]);
+  scale.radius = std::sqrt(area);
+  for (std::size_t t = 0; t < attributes_.texture_count(); ++t) {
+    double positive = 0;
+    double negative = 0;
+    for (std::size_t i = 0; i < patch.face_count(); ++i) {
+      const Index b = patch.polygon[i];
+      const Index c = patch.polygon[i + 1 < patch.polygon.size() ? i + 1 : 0];
+      const double doubled = attributes_.texture_area(t, patch.center, b, c);
+      (doubled > 0 ? positive : negative) += 0.5 * std::abs(doubled);
+    }
+    const double texture_area = positive + negative;
+    scale.texture.push_back(texture_area > 0 ? std::sqrt(area / texture_area) : 0);
+    scale.orientation.push_back(negative == 0 && positive > 0 ? 1 : positive == 0 && negative > 0 ? -1 : 0);
+  }
+  return scale;
 }
 
 void RemovalEvaluator::gather_outside_curvature() {
@@ -168,7 +367,7 @@ void RemovalEvaluator::gather_outside_curvature() {
 }
 
 Verdict RemovalEvaluator::check_closing_edge() const {
-  if (sectors_[0].patch->closed) return Verdict::Legal;
+  if (sectors_[0].patch->shape == SectorShape::Closed) return Verdict::Legal;
   const bool is_border = sectors_.size() == 1;
   if (ring_size() == 2) {
     // A border ear: its one face goes, and the edge behind it becomes the border.
@@ -178,6 +377,39 @@ Verdict RemovalEvaluator::check_closing_edge() const {
   const std::size_t last = ring_number(sectors_[0], sectors_[0].size() - 1);
   const bool lies_on_rim = std::any_of(sectors_.begin(), sectors_.end(), [](const Sector& s) { return s.size() == 2; });
   return !lies_on_rim && linked(first, last) ? Verdict::Link : Verdict::Legal;
+}
+
+/// Whether the lines that move to the target can lie there: no edge joins their ends yet but one of the rim.
+Verdict RemovalEvaluator::check_target(std::size_t target) const {
+  if (ring_size() == 2) return has_outer_[0] != 0 ? Verdict::Legal : Verdict::Link;
+  const auto is_beside_target = [&](std::size_t spoke) {
+    const std::size_t apart = spoke > target ? spoke - target : target - spoke;
+    return apart == 1 || (star_.closed && apart + 1 == ring_size());
+  };
+  for (const Line& line : lines_)
+    if (!is_beside_target(line.to) && linked(target, line.to)) return Verdict::Link;
+  return Verdict::Legal;
+}
+
+/// Fills a sector with the fan of the target.
+Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std::size_t target) {
+  patch.triangles.clear();
+  const std::size_t size = sector.size();
+  if (size == 2) return Verdict::Legal;
+  reset_triangles(size);
+  std::size_t apex = size - 1;
+  if (!sector.is_moved()) {
+    apex = 0;
+    while (ring_number(sector, apex) != target) ++apex;
+  }
+  for (std::size_t i = 1; i + 1 < size; ++i) {
+    std::array<std::size_t, 3> corner{apex, (apex + i) % size, (apex + i + 1) % size};
+    std::sort(corner.begin(), corner.end());
+    patch.triangles.push_back({static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
+                               static_cast<std::uint8_t>(corner[2])});
+  }
+  if (options_->metric == Metric::Hybrid) gather_points(sector);
+  return judge(sector, patch.triangles);
 }
 
 void RemovalEvaluator::reset_triangles(std::size_t size) {
@@ -208,17 +440,29 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
   bool at_rim = false;
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
     if (!is_rim(sector, from, to)) {
-      const bool is_closing = from + 1U == sector.size() && to == 0;
+      const bool is_closing = is_entry(sector, from, to) || is_exit(sector, from, to);
       if (!is_closing && linked(ring_number(sector, from), ring_number(sector, to))) return Verdict::Link;
       continue;
     }
     at_rim = true;
+    if (any_angle_) continue;
     const Vec3& fine = fine_normal_[sector.ring_begin + from];
     const double cosine = dot(entry.normal, fine);
     if (cosine < 0 || cosine * cosine < kMinNormalCosine * kMinNormalCosine * square_area * squared_length(fine))
       return Verdict::Flip;
   }
-  return at_rim || dot(entry.normal, sector.normal) > 0 ? Verdict::Legal : Verdict::Flip;
+  if (!any_angle_ && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Flip;
+  return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Flip : Verdict::Legal;
+}
+
+/// Whether a texture would be turned over on a new face, where it was not on the old ones.
+bool RemovalEvaluator::turns_texture(const Sector& sector, PolygonTriangle t) const {
+  const std::vector<Index>& polygon = sector.patch->polygon;
+  for (std::size_t i = 0; i < attributes_.texture_count(); ++i) {
+    const int orientation = sector.scale.orientation[i];
+    if (orientation * attributes_.texture_area(i, polygon[t.a], polygon[t.b], polygon[t.c]) < 0) return true;
+  }
+  return false;
 }
 
 Verdict RemovalEvaluator::judge(const Sector& sector, Triangles triangles) {
@@ -359,8 +603,9 @@ void RemovalEvaluator::add_coarse_curvature(Sector& sector, Triangles triangles)
       if (is_rim(sector, from, to)) {
         const std::size_t rim = sector.ring_begin + from;
         if (has_outer_[rim] != 0) angle_share = dihedral_share(p, q, entry.normal, outer_normal_[rim]);
-      } else if (from + 1 == size && to == 0) {
-        sector.closing_normal = entry.normal;
+      } else if (is_entry(sector, from, to) || is_exit(sector, from, to)) {
+        if (is_entry(sector, from, to)) sector.entry_normal = entry.normal;
+        if (is_exit(sector, from, to)) sector.exit_normal = entry.normal;
       } else if (has_edge_normal_[to * size + from] != 0) {
         angle_share = dihedral_share(p, q, entry.normal, edge_normal_[to * size + from]);
       } else {
@@ -374,15 +619,22 @@ void RemovalEvaluator::add_coarse_curvature(Sector& sector, Triangles triangles)
   }
 }
 
-/// Adds the angle between the two sides of a feature line at its new edge.
+/// Adds the angles between neighbouring sectors at the edges where they now meet.
 void RemovalEvaluator::add_closing_curvature() {
-  if (!needs_dihedrals_ || sectors_.size() != 2 || sectors_[0].size() == 2 || sectors_[1].size() == 2) return;
-  const std::size_t first = 0;
-  const std::size_t last = ring_number(sectors_[0], sectors_[0].size() - 1);
-  const double share = dihedral_share(ring_position_[first], ring_position_[last], sectors_[0].closing_normal,
-                                      sectors_[1].closing_normal);
-  after_[first].mean += share;
-  after_[last].mean += share;
+  if (!needs_dihedrals_ || !star_.closed) return;
+  for (std::size_t s = 0; s < sectors_.size() && sectors_.size() > 1; ++s) {
+    const Sector& before = sectors_[(s + sectors_.size() - 1) % sectors_.size()];
+    const Sector& sector = sectors_[s];
+    if (before.size() == 2 || sector.size() == 2) continue;
+    const bool both_open = !before.is_moved() && !sector.is_moved();
+    if (both_open && (sectors_.size() > 2 || s == 0)) continue;  // no edge, or the one that the other turn sees
+    const std::size_t from = ring_number(sector, sector.size() - 1);
+    const std::size_t to = ring_number(sector, 0);
+    const double share =
+        dihedral_share(ring_position_[from], ring_position_[to], before.exit_normal, sector.entry_normal);
+    after_[from].mean += share;
+    after_[to].mean += share;
+  }
 }
 
 double RemovalEvaluator::largest_change() const {
@@ -419,25 +671,47 @@ double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
   return std::accumulate(nearest_.begin(), nearest_.end(), 0.0);
 }
 
-/// What a border or feature line is charged for its own displacement: √(√A · D) with A the area it sweeps and D the
-/// distance of all its removed vertices to the new edge, a length.
+/// What borders and feature lines are charged for their own displacement: √(√A · D) each, with A the area it sweeps and
+/// D the distance of all its removed vertices to the new edge, a length.
 double RemovalEvaluator::line_cost(Index vertex) const {
-  if (sectors_[0].patch->closed) return 0;
-  const std::size_t last = ring_number(sectors_[0], sectors_[0].size() - 1);
-  const Vec3& a = ring_position_[0];
-  const Vec3& b = ring_position_[last];
-  double squared_distance = squared_distance_to_segment(center_, a, b);
-  for (const Index neighbour : {ring_vertex_[0], ring_vertex_[last]})
-    for (const Index removed : state_->lines.removed_between(neighbour, vertex))
-      squared_distance += squared_distance_to_segment(Vec3(state_->mesh.positions[removed]), a, b);
-  const double area = 0.5 * length(cross(a - center_, b - center_));
-  return std::sqrt(std::sqrt(area) * std::sqrt(squared_distance));
+  double sum = 0;
+  for (const Line& line : lines_) {
+    const Vec3& a = ring_position_[line.from];
+    const Vec3& b = ring_position_[line.to];
+    double squared_distance = squared_distance_to_segment(center_, a, b);
+    const auto add_removed = [&](std::size_t neighbour) {
+      for (const Index removed : state_->lines.removed_between(ring_vertex_[neighbour], vertex))
+        squared_distance += squared_distance_to_segment(Vec3(state_->mesh.positions[removed]), a, b);
+    };
+    if (line.carries_from) add_removed(line.from);
+    add_removed(line.to);
+    const double area = 0.5 * length(cross(a - center_, b - center_));
+    sum += line.weight * std::sqrt(std::sqrt(area) * std::sqrt(squared_distance));
+  }
+  return sum;
 }
 
-Evaluation RemovalEvaluator::combine(Index vertex, const RemovalRecord& record) {
+/// Compares the removed wedge's attributes with those of the nearest point of the sector's new faces.
+double RemovalEvaluator::squared_attribute_difference(const Sector& sector, Triangles triangles) const {
+  double least = std::numeric_limits<double>::infinity();
+  AttributeCost::Place place;
+  for (const PolygonTriangle t : triangles) {
+    const std::array<std::size_t, 3> corner{t.a, t.b, t.c};
+    const auto at = [&](std::size_t k) { return state_->mesh.positions[ring_vertex_[ring_number(sector, corner[k])]]; };
+    const Barycentric nearest = nearest_weights(center_, {at(0), at(1), at(2)});
+    if (nearest.squared_distance >= least) continue;
+    least = nearest.squared_distance;
+    place.weights = nearest.weights;
+    for (std::size_t k = 0; k < 3; ++k) place.wedges[k] = sector.patch->polygon[corner[k]];
+  }
+  return attributes_.squared_difference(sector.patch->center, place, sector.scale);
+}
+
+Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
   after_ = outside_;
   double squared_volume = 0;
   double squared_distance = 0;
+  double squared_attributes = 0;
   const bool is_hybrid = options_->metric == Metric::Hybrid;
   for (std::size_t s = 0; s < sectors_.size(); ++s) {
     Sector& sector = sectors_[s];
@@ -449,14 +723,15 @@ Evaluation RemovalEvaluator::combine(Index vertex, const RemovalRecord& record) 
     if (!is_hybrid) continue;
     if (sectors_.size() > 1) gather_points(sector);
     squared_distance += squared_distance_sum(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
+    if (!attributes_.empty()) squared_attributes += squared_attribute_difference(sector, triangles);
   }
   add_closing_curvature();
   Evaluation result{Verdict::Legal, 0, largest_change()};
   result.cost = result.curvature_error + tie_break(squared_volume);
   if (!is_hybrid) return result;
   const double swept = std::sqrt(std::cbrt(std::sqrt(squared_volume)) * std::sqrt(squared_distance));
-  const double moved = swept + kLineWeight * line_cost(vertex);
-  result.cost = std::pow(moved, 0.9) * std::pow(std::max(result.curvature_error, kMinCurvatureChange), 0.1);
+  const double moved = swept + line_cost(record.vertex) + std::sqrt(squared_attributes);
+  result.cost = hybrid_cost(moved, result.curvature_error);
   return result;
 }
 

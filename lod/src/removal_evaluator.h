@@ -12,6 +12,7 @@
 #include <lodestone/core/triangulation.h>
 #include <lodestone/lod/simplify.h>
 
+#include "attribute_cost.h"
 #include "point_triangle.h"
 #include "simplify_state.h"
 
@@ -20,10 +21,15 @@ namespace lodestone::detail {
 /// Larger rings wait until their neighbours' removals have shrunk them.
 inline constexpr std::size_t kMaxRing = 64;
 
+/// The cost of a removal by the hybrid metric: `moved` is what it moves, a length, `turned` the change of curvature in
+/// radians, which only orders removals that move alike.
+inline constexpr double kDistanceExponent = 0.9;
+double hybrid_cost(double moved, double turned);
+
 /// What the evaluation of a removal found.
 enum class Verdict : std::uint8_t { Legal, Locked, Flip, Link, Ring };
 
-/// Which triangulation each sector of a star was given, for evaluating it again.
+/// Which triangulation each sector of a star was given, or which spoke a corner was moved along, for evaluating it again.
 using Choice = std::array<std::uint8_t, 2>;
 inline constexpr std::uint8_t kNoChoice = 255;
 
@@ -33,17 +39,27 @@ struct Evaluation {
   double curvature_error = 0;  ///< ε, in the metric's own unit
 };
 
-/// Finds the best retriangulation for the removal of a vertex, and what it costs.
+/// A removal as evaluated: a record for the vertex, and one for each of its copies.
+using Removal = std::vector<RemovalRecord>;
+
+/// Finds the best way to remove a vertex, and what it costs.
+///
+/// Interior vertices and those on a line leave a hole that is retriangulated. Corners move to a neighbour, and so do the
+/// copies of a vertex that was cut into sheets: all to the same place, so that the sheets stay together.
 ///
 /// Keeps scratch memory of one star: one object for each thread.
 class RemovalEvaluator {
  public:
   RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options);
 
-  /// Evaluates a removal. Where it is legal, `record` holds the sectors with the triangles chosen.
-  /// `choice` names the triangulations chosen; where it comes with a choice that is still admissible, no other is
-  /// tried.
-  Evaluation evaluate(Index vertex, RemovalRecord& record, Choice& choice);
+  /// Evaluates a removal; of several copies `vertex` is the first. Where it is legal, `removal` holds the records with
+  /// the triangles chosen. `choice` names what was chosen; where it comes with a choice that is still admissible, no
+  /// other is tried.
+  Evaluation evaluate(Index vertex, Removal& removal, Choice& choice);
+
+  /// From now on lets faces turn by any angle: where nothing else is left to do, a worse shape is better than too many
+  /// faces. Textures still must not turn over.
+  void allow_any_angle() { any_angle_ = true; }
 
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
@@ -61,20 +77,47 @@ class RemovalEvaluator {
   struct Sector {
     const SectorPatch* patch = nullptr;
     std::size_t ring_begin = 0;  // the ring number of polygon corner 0, and of the first face
+    std::size_t target = 0;      // the ring number of a moved sector's last corner
     Vec3 normal;                 // sum of its faces' normals
-    Vec3 closing_normal;         // of the triangle chosen at the closing edge
+    Vec3 entry_normal;           // of the triangle chosen at the edge shared with the sector before
+    Vec3 exit_normal;            // and with the sector after; the same for an open sector
+    AttributeScale scale;
     std::size_t size() const { return patch->polygon.size(); }
+    bool is_moved() const { return patch->shape == SectorShape::Moved; }
+  };
+  /// A border or feature line that a removal moves: it then runs straight between two ring vertices.
+  struct Line {
+    std::size_t from = 0;  // ring numbers
+    std::size_t to = 0;
+    double weight = 1;
+    bool carries_from = true;  // whether it takes over what the line to `from` stood for
   };
   using Triangles = std::span<const PolygonTriangle>;
 
-  Verdict gather(Index vertex, RemovalRecord& record);
-  void gather_ring(const RemovalRecord& record);
-  void gather_normals(const RemovalRecord& record);
+  Evaluation evaluate_hole(RemovalRecord& record, Choice& choice);
+  Evaluation evaluate_corner(RemovalRecord& record, Choice& choice);
+  Evaluation evaluate_copies(Index vertex, Removal& removal, Choice& choice);
+  Evaluation evaluate_copies_at(Index vertex, Index target_site, Removal& removal);
+  Evaluation evaluate_collapse(std::size_t target, RemovalRecord& record);
+
+  Verdict gather(Index vertex);
+  void gather_ring();
+  void gather_normals();
   bool gather_links(Index vertex);
+  bool has_face_over_ring() const;
   void gather_points(const Sector& sector);
   void gather_outside_curvature();
+  bool is_target(std::size_t spoke) const;
+  bool is_constrained_spoke(std::size_t spoke) const;
+  double line_weight(std::size_t spoke) const;
+  Index best_wedge(Index vertex, Index like) const;
 
+  void take_sectors(RemovalRecord& record, std::size_t target);
+  void take_lines(std::size_t target);
+  AttributeScale attribute_scale(const SectorPatch& patch, std::size_t ring_begin) const;
   Verdict check_closing_edge() const;
+  Verdict check_target(std::size_t target) const;
+  Verdict fill_with_fan(Sector& sector, SectorPatch& patch, std::size_t target);
   Verdict choose(Sector& sector, SectorPatch& patch, std::uint8_t& choice);
   Triangles candidate(const Sector& sector, int which);
   Verdict list_admissible(const Sector& sector);
@@ -95,22 +138,36 @@ class RemovalEvaluator {
   double largest_change() const;
   double bridge_sum(const Sector& sector, Triangles triangles);
   double line_cost(Index vertex) const;
-  Evaluation combine(Index vertex, const RemovalRecord& record);
+  double squared_attribute_difference(const Sector& sector, Triangles triangles) const;
+  bool turns_texture(const Sector& sector, PolygonTriangle t) const;
+  Evaluation combine(const RemovalRecord& record);
 
   std::size_t ring_size() const { return ring_position_.size(); }
   std::size_t ring_number(const Sector& sector, std::size_t corner) const {
+    if (sector.is_moved() && corner + 1 == sector.size()) return sector.target;
     return (sector.ring_begin + corner) % ring_size();
   }
   const Vec3& position(const Sector& sector, std::size_t corner) const {
     return ring_position_[ring_number(sector, corner)];
   }
   bool is_rim(const Sector& sector, std::size_t from, std::size_t to) const {
-    return to == from + 1 || (sector.patch->closed && to == 0 && from + 1 == sector.size());
+    const bool wraps = sector.patch->shape == SectorShape::Closed && to == 0 && from + 1 == sector.size();
+    return wraps || (to == from + 1 && !(sector.is_moved() && to + 1 == sector.size()));
+  }
+  bool is_entry(const Sector& sector, std::size_t from, std::size_t to) const {
+    return sector.patch->shape != SectorShape::Closed && to == 0 && from + 1 == sector.size();
+  }
+  bool is_exit(const Sector& sector, std::size_t from, std::size_t to) const {
+    return sector.is_moved() ? to == from + 1 && to + 1 == sector.size() : is_entry(sector, from, to);
   }
   bool linked(std::size_t a, std::size_t b) const { return linked_[a * ring_size() + b] != 0; }
 
   const SimplifyState* state_;
   const SimplifyOptions* options_;
+  AttributeCost attributes_;
+  std::vector<Index> wedge_begin_;     // by vertex: its wedges in vertex_wedges_; empty without seams
+  std::vector<Index> vertex_wedges_;
+  bool any_angle_ = false;
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;
@@ -118,6 +175,7 @@ class RemovalEvaluator {
   Star star_;
   Vec3 center_;
   std::vector<Sector> sectors_;
+  std::vector<Line> lines_;
   std::vector<Index> ring_vertex_;
   std::vector<Vec3> ring_position_;
   std::vector<Index> fine_corner_;  // the star's corners at the vertex, in ring order
@@ -127,7 +185,7 @@ class RemovalEvaluator {
   std::vector<VertexCurvature> outside_;  // the ring's curvature without the star
   std::vector<VertexCurvature> after_;    // and with a retriangulation
   std::vector<std::uint8_t> linked_;      // which ring vertices an edge joins
-  std::vector<Index> ring_of_vertex_;     // by vertex, kNoIndex outside the ring
+  std::vector<Index> ring_of_site_;       // by vertex, the first of its copies; kNoIndex outside the ring
   PointBatch points_;                     // the sector's carried points
   std::vector<float> weights_;            // of those points
   std::vector<float> nearest_;
@@ -136,6 +194,8 @@ class RemovalEvaluator {
   Triangle untabulated_;
   std::vector<std::pair<double, int>> ranked_;
   std::vector<PolygonTriangle> fan_;
+  RemovalRecord trial_;
+  Removal trial_copies_;
   std::vector<Vec3> edge_normal_;  // of coarse faces, by directed polygon edge
   std::vector<std::uint8_t> has_edge_normal_;
 };

@@ -1,5 +1,6 @@
 // Removal in rounds: each round takes the cheapest share of all vertices in order of (cost, number) and removes those
-// whose rings do not meet. Within a round records commute, which keeps the order of work out of the result.
+// whose rings do not meet. Within a round records commute, which keeps the order of work out of the result. Pieces that
+// are nearly used up vanish as a whole once that costs no more than the round's removals.
 // Costs: see removal_evaluator.cpp. Deviation bounds: see deviation_bounds.cpp.
 
 #include <lodestone/lod/simplify.h>
@@ -7,10 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <lodestone/core/validate.h>
 
+#include "creases.h"
 #include "deviation_bounds.h"
+#include "pieces.h"
 #include "record_builder.h"
 #include "removal_evaluator.h"
 #include "spatial_order.h"
@@ -26,6 +30,12 @@ constexpr double kNarrowShare = 0.05;
 constexpr double kNarrowPureShare = 0.02;  // curvature alone leaves many ties, and their order matters
 constexpr std::size_t kNarrowBelow = 8000;
 
+// What cannot go below this by removals of vertices (a tetrahedron, a card) may vanish as a whole.
+constexpr std::size_t kSmallPiece = 16;
+
+// How many of the vertices left are looked at, along the curve and each way, for one near a piece that vanishes.
+constexpr int kNearCandidates = 32;
+
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
 
 class Simplifier {
@@ -34,8 +44,9 @@ class Simplifier {
       : options_(options),
         state_{mesh, std::move(connectivity), CarriedPoints(mesh), {}, {}, {}},
         evaluator_(state_, options_),
-        builder_(mesh),
-        bounds_(mesh, options.measure_step) {}
+        builder_(mesh, state_.connectivity),
+        bounds_(mesh, options.measure_step),
+        pieces_(mesh, state_.connectivity) {}
 
   SimplifyResult run();
 
@@ -45,11 +56,22 @@ class Simplifier {
   bool choose_candidates();
   bool run_round();
   void try_remove(Index vertex);
-  void remove(RemovalRecord& record, const Evaluation& evaluation);
+  void remove(const Evaluation& evaluation);
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
+  void update_dirty();
+  bool allow_any_angle();
   bool target_met();
-  bool held_by_curvature() const;
+  void note_charge(double cost);
+  std::vector<float> charges() const;
+
+  void price_pieces();
+  bool remove_pieces(bool stuck);
+  std::vector<Index> choose_pieces(bool stuck);
+  void remove_piece(Index piece);
+  Index vertex_left_near(Index vertex, Index piece) const;
+  
+
   BlockedCounts count_blocked() const;
 
   SimplifyOptions options_;
@@ -58,7 +80,14 @@ class Simplifier {
   RecordBuilder builder_;
   DeviationBounds bounds_;
 
-  std::vector<float> cost_;
+  Pieces pieces_;
+  std::vector<float> piece_cost_;
+  std::vector<float> piece_error_;                        // curvature error, in the metric's own unit
+  std::vector<std::uint8_t> piece_moves_;                 // whether any of its vertices can be removed
+  float limit_ = 0;  // the cost that bounds this round's removals
+
+  std::vector<float> charge_;  // by removal, in order
+  std::vector<float> cost_;    // by vertex; of several copies the first stands for all
   std::vector<Verdict> verdict_;
   std::vector<Choice> choice_;
   std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
@@ -66,7 +95,8 @@ class Simplifier {
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
   Index round_ = 0;
-  RemovalRecord record_;
+  bool any_angle_ = false;
+  Removal removal_;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
   std::size_t evaluation_count_ = 0;
@@ -84,13 +114,18 @@ void Simplifier::prepare() {
   verdict_.assign(count, Verdict::Locked);
   claimed_.assign(count, 0);
   for (Index v = 0; v < count; ++v)
-    if (state_.connectivity.has_vertex(v)) evaluate(v);
+    if (state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
+  price_pieces();
 }
 
 void Simplifier::evaluate(Index vertex) {
   choice_[vertex] = {kNoChoice, kNoChoice};
-  const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
+  Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
   ++evaluation_count_;
+  if (!options_.importance.empty()) {
+    evaluation.cost *= static_cast<double>(options_.importance[vertex]);
+    if (options_.importance[vertex] >= kLockingImportance) evaluation.verdict = Verdict::Locked;
+  }
   stale_[vertex] = 0;
   verdict_[vertex] = evaluation.verdict;
   const bool within = evaluation.curvature_error <= options_.stop.max_curvature_error;
@@ -103,8 +138,12 @@ void Simplifier::evaluate(Index vertex) {
 /// it is evaluated anew, and stays if it is still as cheap as the rest. Returns whether any vertex was left to look at.
 bool Simplifier::choose_candidates() {
   candidates_.clear();
-  for (Index v = 0; v < cost_.size(); ++v)
-    if (cost_[v] < kIllegal) candidates_.push_back(v);
+  std::fill(piece_moves_.begin(), piece_moves_.end(), std::uint8_t{0});
+  for (Index v = 0; v < cost_.size(); ++v) {
+    if (cost_[v] == kIllegal) continue;
+    candidates_.push_back(v);
+    piece_moves_[pieces_.piece_of(v)] = 1;
+  }
   if (candidates_.empty()) return false;
   const double narrow = options_.metric == Metric::Hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
@@ -112,55 +151,80 @@ bool Simplifier::choose_candidates() {
   const auto cheaper = [&](Index a, Index b) { return cost_[a] != cost_[b] ? cost_[a] < cost_[b] : a < b; };
   const auto last = candidates_.begin() + static_cast<std::ptrdiff_t>(count - 1);
   std::nth_element(candidates_.begin(), last, candidates_.end(), cheaper);
-  const float limit = cost_[*last];
+  limit_ = cost_[*last];
   candidates_.resize(count);
   for (const Index v : candidates_)
     if (stale_[v] != 0) evaluate(v);
-  candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit; }),
+  candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit_; }),
                     candidates_.end());
   std::sort(candidates_.begin(), candidates_.end(), cheaper);
   return true;
 }
 
+/// Whether no removal of this round has touched the stars of the vertex and its copies.
 bool Simplifier::ring_is_free(Index vertex) {
-  if (claimed_[vertex] == round_ + 1) return false;
-  state_.connectivity.gather_star(vertex, star_);
-  return std::none_of(star_.corners.begin(), star_.corners.end(), [&](Index corner) {
-    return claimed_[state_.connectivity.vertex(next_corner(corner))] == round_ + 1 ||
-           claimed_[state_.connectivity.vertex(previous_corner(corner))] == round_ + 1;
-  });
+  const Connectivity& mesh = state_.connectivity;
+  const auto is_claimed = [&](Index v) { return claimed_[mesh.site(v)] == round_ + 1; };
+  if (is_claimed(vertex)) return false;
+  for (Index copy = vertex;;) {
+    mesh.gather_star(copy, star_);
+    for (const Index corner : star_.corners)
+      if (is_claimed(mesh.vertex(next_corner(corner))) || is_claimed(mesh.vertex(previous_corner(corner)))) return false;
+    copy = mesh.next_copy(copy);
+    if (copy == vertex) return true;
+  }
 }
 
 void Simplifier::claim_ring(const RemovalRecord& record) {
-  claimed_[record.vertex] = round_ + 1;
+  const Connectivity& mesh = state_.connectivity;
+  claimed_[mesh.site(record.vertex)] = round_ + 1;
   for (const SectorPatch& sector : record.sectors)
     for (const Index wedge : sector.polygon) {
-      const Index v = state_.connectivity.vertex_of_wedge(wedge);
-      if (claimed_[v] == round_ + 1) continue;
-      claimed_[v] = round_ + 1;
-      dirty_.push_back(v);
+      const Index site = mesh.site(mesh.vertex_of_wedge(wedge));
+      if (claimed_[site] == round_ + 1) continue;
+      claimed_[site] = round_ + 1;
+      dirty_.push_back(site);
     }
 }
 
-void Simplifier::remove(RemovalRecord& record, const Evaluation& evaluation) {
-  claim_ring(record);
-  bounds_.add(record);
-  remove_vertex(state_.connectivity, record);
-  carry_memory(state_, record);
-  builder_.add(record, evaluation.curvature_error);
-  cost_[record.vertex] = kIllegal;
+void Simplifier::remove(const Evaluation& evaluation) {
+  const std::size_t before = state_.connectivity.face_count();
+  for (RemovalRecord& record : removal_) {
+    claim_ring(record);
+    remove_vertex(state_.connectivity, record);
+    carry_memory(state_, record);
+  }
+  bounds_.add(removal_);
+  builder_.add(removal_, evaluation.curvature_error);
+  note_charge(evaluation.cost);
+  const Index vertex = removal_.front().vertex;
+  pieces_.lose_faces(pieces_.piece_of(vertex), before - state_.connectivity.face_count());
+  cost_[state_.connectivity.site(vertex)] = kIllegal;
 }
 
 void Simplifier::try_remove(Index vertex) {
   if (!ring_is_free(vertex)) return;
-  const Evaluation evaluation = evaluator_.evaluate(vertex, record_, choice_[vertex]);
+  Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
   // Its surroundings may have changed since it was ranked.
   verdict_[vertex] = evaluation.verdict;
   if (evaluation.verdict != Verdict::Legal || evaluation.curvature_error > options_.stop.max_curvature_error) {
     cost_[vertex] = kIllegal;
     return;
   }
-  remove(record_, evaluation);
+  evaluation.cost = static_cast<double>(cost_[vertex]);  // as ranked, importance included
+  remove(evaluation);
+}
+
+void Simplifier::note_charge(double cost) {
+  const double length = options_.metric == Metric::Hybrid ? std::pow(cost, 1 / kDistanceExponent) : cost;
+  charge_.push_back(std::max(static_cast<float>(length), charge_.empty() ? 0.0F : charge_.back()));
+}
+
+/// The charges by position, coarse to fine.
+std::vector<float> Simplifier::charges() const {
+  std::vector<float> result(charge_.rbegin(), charge_.rend());
+  result.push_back(0);
+  return result;
 }
 
 bool Simplifier::target_met() {
@@ -171,7 +235,22 @@ bool Simplifier::target_met() {
   return false;
 }
 
-/// Removes the candidates whose rings do not meet; false where none is left to try.
+/// Looks anew at what lies around this round's removals.
+void Simplifier::update_dirty() {
+  const Connectivity& mesh = state_.connectivity;
+  for (const Index site : dirty_)
+    for (Index copy = site;;) {
+      state_.curvature[copy] = vertex_curvature(state_.mesh, mesh, VertexId{copy});
+      copy = mesh.next_copy(copy);
+      if (copy == site) break;
+    }
+  for (const Index site : dirty_) {
+    stale_[site] = 1;
+    if (cost_[site] == kIllegal) evaluate(site);  // it may be legal now
+  }
+}
+
+/// Removes the candidates whose rings do not meet, and pieces that cost no more; false where nothing is left to try.
 bool Simplifier::run_round() {
   dirty_.clear();
   const bool any_left = choose_candidates();
@@ -179,30 +258,125 @@ bool Simplifier::run_round() {
     if (target_met()) break;
     try_remove(vertex);
   }
-  for (const Index v : dirty_) state_.curvature[v] = vertex_curvature(state_.mesh, state_.connectivity, VertexId{v});
-  for (const Index v : dirty_) {
-    stale_[v] = 1;
-    if (cost_[v] == kIllegal) evaluate(v);  // it may be legal now
-  }
+  update_dirty();
   builder_.end_round();
   ++round_;
   // Where nothing could go, costs have risen or candidates have dropped out: only an empty list ends the run.
-  return any_left;
+  return remove_pieces(!any_left) || any_left;
 }
 
-/// Whether a legal removal is left that only the limit on the curvature error forbids.
-bool Simplifier::held_by_curvature() const {
-  for (Index v = 0; v < verdict_.size(); ++v)
-    if (state_.connectivity.has_vertex(v) && verdict_[v] == Verdict::Legal) return true;
-  return false;
+/// Where nothing else can be removed: drops the limit on how far faces may turn. Returns whether that is news.
+bool Simplifier::allow_any_angle() {
+  if (any_angle_) return false;
+  any_angle_ = true;
+  evaluator_.allow_any_angle();
+  for (Index v = 0; v < cost_.size(); ++v)
+    if (verdict_[v] == Verdict::Flip && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
+  return true;
+}
+
+/// Works out what the loss of each piece costs: its width for every point it stands for, and the curvature that goes
+/// with it.
+void Simplifier::price_pieces() {
+  piece_moves_.assign(pieces_.count(), 1);
+  for (Index piece = 0; piece < pieces_.count(); ++piece) {
+    float error = 0;
+    float importance = options_.importance.empty() ? 1.0F : 0.0F;
+    bool open = false;
+    for (const Index v : pieces_.vertices(piece)) {
+      error = std::max(error, std::abs(state_.original_curvature[v]));
+      if (!options_.importance.empty()) importance = std::max(importance, options_.importance[v]);
+      if (!options_.lock_border || !state_.connectivity.has_vertex(v)) continue;
+      state_.connectivity.gather_star(v, star_);
+      open = open || !star_.closed;
+    }
+    const double loss = pieces_.loss(state_.mesh, piece);
+    const bool is_hybrid = options_.metric == Metric::Hybrid;
+    double cost = is_hybrid ? hybrid_cost(loss, static_cast<double>(error)) : static_cast<double>(error);
+    cost *= static_cast<double>(importance);
+    const bool stays = open || importance >= kLockingImportance || error > options_.stop.max_curvature_error;
+    piece_cost_.push_back(stays ? kIllegal : static_cast<float>(cost));
+    piece_error_.push_back(error);
+  }
+}
+
+/// The pieces to go, cheapest first: those within the round's limit that are small or cannot be simplified further, or
+/// any where nothing else can be removed.
+std::vector<Index> Simplifier::choose_pieces(bool stuck) {
+  std::vector<Index> chosen;
+  for (Index piece = 0; piece < pieces_.count(); ++piece) {
+    if (pieces_.face_count(piece) == 0 || piece_cost_[piece] == kIllegal) continue;
+    const bool used_up = pieces_.face_count(piece) <= kSmallPiece || piece_moves_[piece] == 0;
+    if (stuck || (used_up && piece_cost_[piece] <= limit_)) chosen.push_back(piece);
+  }
+  std::sort(chosen.begin(), chosen.end(), [&](Index a, Index b) {
+    return piece_cost_[a] != piece_cost_[b] ? piece_cost_[a] < piece_cost_[b] : a < b;
+  });
+  return chosen;
+}
+
+bool Simplifier::remove_pieces(bool stuck) {
+  bool any = false;
+  for (const Index piece : choose_pieces(stuck)) {
+    if (target_met() || (pieces_.left() == 1 && !options_.vanish)) break;
+    remove_piece(piece);
+    any = true;
+  }
+  return any;
+}
+
+void Simplifier::remove_piece(Index piece) {
+  Index seed = kNoIndex;
+  for (const Index v : pieces_.vertices(piece)) {
+    cost_[v] = kIllegal;
+    if (seed == kNoIndex && state_.connectivity.has_vertex(v)) seed = v;
+  }
+  const std::vector<RemovalRecord> records = remove_component(state_.connectivity, seed);
+  pieces_.vanish(piece);
+  const Index near = vertex_left_near(seed, piece);
+  if (near == kNoIndex) {
+    bounds_.add_last();
+  } else {
+    double reach = 0;
+    for (const RemovalRecord& record : records)
+      reach = std::max(reach, length(Vec3(state_.mesh.positions[record.vertex]) - Vec3(state_.mesh.positions[near])));
+    bounds_.add_vanished(records, face_of_corner(state_.connectivity.corner_at(near)), reach);
+  }
+  // One after the other: copies of a vertex make one record, and each record stands in a round of its own.
+  const auto site = [&](std::size_t i) { return state_.connectivity.site(records[i].vertex); };
+  for (std::size_t i = 0, j = 0; i < records.size(); i = j) {
+    while (j < records.size() && site(j) == site(i)) ++j;
+    builder_.add(std::span(records).subspan(i, j - i), static_cast<double>(piece_error_[piece]));
+    bounds_.repeat();
+    builder_.end_round();
+    note_charge(static_cast<double>(piece_cost_[piece]));
+  }
+}
+
+/// A vertex that is left near another: the nearest of some, going both ways along the curve in which vertices stand.
+Index Simplifier::vertex_left_near(Index vertex, Index piece) const {
+  Index best = kNoIndex;
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](Index v) {
+    if (!state_.connectivity.has_vertex(v) || pieces_.piece_of(v) == piece) return false;
+    const double distance = squared_length(Vec3(state_.mesh.positions[v]) - Vec3(state_.mesh.positions[vertex]));
+    if (distance < least) least = distance, best = v;
+    return true;
+  };
+  int found = 0;
+  for (Index v = vertex; v-- > 0 && found < kNearCandidates;) found += consider(v) ? 1 : 0;
+  found = 0;
+  for (Index v = vertex + 1; v < state_.mesh.vertex_count() && found < kNearCandidates; ++v) found += consider(v) ? 1 : 0;
+  return best;
 }
 
 BlockedCounts Simplifier::count_blocked() const {
   BlockedCounts blocked;
   for (Index v = 0; v < verdict_.size(); ++v) {
-    if (!state_.connectivity.has_vertex(v)) continue;
+    if (!state_.connectivity.has_vertex(v) || state_.connectivity.site(v) != v) continue;
     switch (verdict_[v]) {
       case Verdict::Legal:
+        ++blocked.error;
         break;
       case Verdict::Locked:
         ++blocked.locked;
@@ -225,7 +399,7 @@ SimplifyResult Simplifier::run() {
   prepare();
   const double full_faces = static_cast<double>(state_.connectivity.face_count());
   while (!target_met()) {
-    if (!run_round()) break;
+    if (!run_round() && !allow_any_angle()) break;
     bounds_.end_round(state_.connectivity);
     if (bounds_.current() > options_.stop.max_deviation) {
       stop_reason_ = StopReason::Deviation;
@@ -237,13 +411,14 @@ SimplifyResult Simplifier::run() {
       break;
     }
   }
-  if (stop_reason_ == StopReason::Stuck && held_by_curvature()) stop_reason_ = StopReason::CurvatureError;
-  bounds_.stop_measuring();
   SimplifyResult result;
-  result.stop_reason = stop_reason_;
   result.blocked = count_blocked();
+  if (stop_reason_ == StopReason::Stuck && result.blocked.error > 0) stop_reason_ = StopReason::CurvatureError;
+  bounds_.stop_measuring();
+  result.stop_reason = stop_reason_;
   result.evaluation_count = evaluation_count_;
-  result.mesh = builder_.finish(state_.connectivity, bounds_.bounds());
+  result.charge = charges();
+  result.mesh = builder_.finish(bounds_.bounds());
   return result;
 }
 
@@ -251,10 +426,17 @@ SimplifyResult Simplifier::run() {
 
 Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options) {
   if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
-  const Mesh sorted = in_spatial_order(mesh);
+  if (!options.importance.empty() && options.importance.size() != mesh.vertex_count())
+    return fail(ErrorCode::InvalidArgument, "importance has " + std::to_string(options.importance.size()) +
+                                                " values for " + std::to_string(mesh.vertex_count()) + " vertices");
+  std::vector<Index> source_vertex;
+  const Mesh sorted = in_spatial_order(mesh, source_vertex);
   auto connectivity = Connectivity::build(sorted);
   if (!connectivity) return tl::unexpected(connectivity.error());
-  return Simplifier(sorted, std::move(*connectivity), options).run();
+  mark_creases(sorted, options, *connectivity);
+  SimplifyOptions local = options;
+  for (std::size_t v = 0; v < local.importance.size(); ++v) local.importance[v] = options.importance[source_vertex[v]];
+  return Simplifier(sorted, std::move(*connectivity), local).run();
 }
 
 }  // namespace lodestone

@@ -1,5 +1,6 @@
 #include "simplify_state.h"
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 
@@ -27,6 +28,18 @@ std::vector<Index> heirs(const SectorPatch& sector) {
     return {sector.faces.begin(), sector.faces.begin() + static_cast<std::ptrdiff_t>(sector.triangles.size())};
   if (sector.lone_outer == kNoIndex) return {};
   return {face_of_corner(sector.lone_outer)};
+}
+
+/// The same for a sector of which nothing is left and nothing lies beyond: the faces of all sectors.
+std::vector<Index> heirs_of_all(const RemovalRecord& record) {
+  std::vector<Index> faces;
+  for (const SectorPatch& sector : record.sectors) {
+    const std::vector<Index> some = heirs(sector);
+    faces.insert(faces.end(), some.begin(), some.end());
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
 }
 
 /// Returns the heir nearest to each point.
@@ -100,12 +113,20 @@ void carry_memory(SimplifyState& state, const RemovalRecord& record) {
   for (const SectorPatch& sector : record.sectors) {
     std::vector<Index> taken = take_points(state.points, sector);
     if (&sector == &record.sectors.front()) taken.push_back(record.vertex);
-    give_points(state, taken, heirs(sector), center);
+    std::vector<Index> faces = heirs(sector);
+    if (faces.empty()) faces = heirs_of_all(record);
+    give_points(state, taken, faces, center);
   }
-  const SectorPatch& first = record.sectors.front();
-  if (first.closed) return;
-  state.lines.merge(state.connectivity.vertex_of_wedge(first.polygon.front()), record.vertex,
-                    state.connectivity.vertex_of_wedge(first.polygon.back()));
+  if (record.sectors.front().shape == SectorShape::Closed) return;
+  std::vector<Index> others;
+  for (const SectorPatch& sector : record.sectors)
+    others.push_back(state.connectivity.vertex_of_wedge(sector.polygon.front()));
+  const SectorPatch& last = record.sectors.back();
+  if (record.open_star)
+    others.push_back(state.connectivity.vertex_of_wedge(last.polygon[last.face_count()]));
+  const Index target = record.target != kNoIndex ? record.target : others.front();
+  others.erase(std::remove(others.begin(), others.end(), target), others.end());
+  state.lines.collapse(record.vertex, target, others);
 }
 
 }  // namespace lodestone::detail

@@ -68,8 +68,9 @@ void copy_attributes(const Mesh& mesh, const std::vector<Index>& source, Mesh& s
 
 }  // namespace
 
-Mesh in_spatial_order(const Mesh& mesh) {
+Mesh in_spatial_order(const Mesh& mesh, std::vector<Index>& source_vertex) {
   Mesh sorted;
+  source_vertex.clear();
   std::vector<Index> vertex_of(mesh.vertex_count(), kNoIndex);
   std::vector<Index> wedge_of(mesh.wedge_count(), kNoIndex);
   std::vector<Index> source_wedge;
@@ -82,6 +83,7 @@ Mesh in_spatial_order(const Mesh& mesh) {
       if (vertex == kNoIndex) {
         vertex = static_cast<Index>(sorted.positions.size());
         sorted.positions.push_back(mesh.positions[mesh.wedge_vertex[wedge]]);
+        source_vertex.push_back(mesh.wedge_vertex[wedge]);
       }
       if (wedge_of[wedge] == kNoIndex) {
         wedge_of[wedge] = static_cast<Index>(sorted.wedge_vertex.size());

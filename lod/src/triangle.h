@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include <lodestone/core/mesh.h>
 
 namespace lodestone::detail {
@@ -51,6 +54,26 @@ inline Vec3 nearest_on_triangle(const Vec3& p, const Triangle& triangle) {
   consider(outside_bc, b, c);
   consider(outside_ca, c, a);
   return best;
+}
+
+/// A point of a triangle, by the weights of its corners.
+struct Barycentric {
+  std::array<double, 3> weights{1, 0, 0};
+  double squared_distance = 0;  ///< from the point that was asked for
+};
+
+/// Returns the point of a triangle nearest to `p`.
+inline Barycentric nearest_weights(const Vec3& p, const Triangle& triangle) {
+  const Vec3 q = nearest_on_triangle(p, triangle);
+  const Vec3 a(triangle.a), b(triangle.b), c(triangle.c);
+  const Vec3 n = cross(b - a, c - a);
+  const double nn = squared_length(n);
+  Barycentric result{{1, 0, 0}, squared_length(p - q)};
+  if (!(nn > 0)) return result;
+  const double at_b = std::clamp(dot(cross(q - a, c - a), n) / nn, 0.0, 1.0);
+  const double at_c = std::clamp(dot(cross(b - a, q - a), n) / nn, 0.0, 1.0 - at_b);
+  result.weights = {1 - at_b - at_c, at_b, at_c};
+  return result;
 }
 
 }  // namespace lodestone::detail

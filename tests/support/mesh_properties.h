@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <set>
 #include <vector>
 
 #include <lodestone/core/assemble.h>
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/mesh.h>
+#include <lodestone/lod/progressive_mesh.h>
 
 #include "support/catch.h"
 #include "support/shapes.h"
@@ -60,6 +62,43 @@ inline int euler_characteristic(const Connectivity& mesh) {
     border_edges += mesh.opposite(c) == kNoIndex ? 1 : 0;
   }
   return vertices - (half_edges + border_edges) / 2 + static_cast<int>(mesh.face_count());
+}
+
+/// A position, to find it again.
+using Place = std::array<float, 3>;
+inline Place place_of(const Mesh& mesh, Index vertex) {
+  const Vec3f& p = mesh.positions[vertex];
+  return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+}
+
+/// Returns the ends of all edges that only one face has: of borders, and of cracks.
+inline std::set<Place> open_places(const Mesh& mesh) {
+  std::map<std::pair<Place, Place>, int> faces;
+  for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {
+    const Place a = place_of(mesh, mesh.corner_vertex(c));
+    const Place b = place_of(mesh, mesh.corner_vertex(next_corner(c)));
+    ++faces[std::minmax(a, b)];
+  }
+  std::set<Place> places;
+  for (const auto& [edge, count] : faces) {
+    if (count > 1) continue;
+    places.insert(edge.first);
+    places.insert(edge.second);
+  }
+  return places;
+}
+
+/// Twice the signed area of a face in the first texture.
+inline double texture_area(const Mesh& mesh, Index face) {
+  const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
+                                  [](const Attribute& a) { return a.name == "TEXCOORD_0"; });
+  const auto at = [&](Index corner, std::size_t i) {
+    float value = 0;
+    std::memcpy(&value, &found->data[8 * std::size_t{mesh.corner_wedge[corner]} + 4 * i], 4);
+    return static_cast<double>(value);
+  };
+  const Index a = 3 * face;
+  return (at(a + 1, 0) - at(a, 0)) * (at(a + 2, 1) - at(a, 1)) - (at(a + 1, 1) - at(a, 1)) * (at(a + 2, 0) - at(a, 0));
 }
 
 }  // namespace lodestone::test

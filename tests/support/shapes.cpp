@@ -330,6 +330,139 @@ TriangleSoup two_material_sphere(int subdivisions) {
   return soup;
 }
 
+namespace {
+
+/// Gives every triangle points of its own.
+TriangleSoup exploded(const TriangleSoup& soup) {
+  TriangleSoup result;
+  for (const Index point : soup.indices) {
+    result.indices.push_back(static_cast<Index>(result.positions.size()));
+    result.positions.push_back(soup.positions[point]);
+  }
+  return result;
+}
+
+void append_vector(std::vector<float>& values, const Vec3& v) {
+  values.insert(values.end(), {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
+}
+
+/// Normals of the triangles of an exploded soup, by point.
+Attribute flat_normals(const TriangleSoup& soup) {
+  std::vector<float> normals;
+  for (std::size_t t = 0; t < soup.positions.size(); t += 3) {
+    const Vec3 a(soup.positions[t]), b(soup.positions[t + 1]), c(soup.positions[t + 2]);
+    for (int k = 0; k < 3; ++k) append_vector(normals, normalized(cross(b - a, c - a)));
+  }
+  return float_attribute("NORMAL", 3, normals);
+}
+
+}  // namespace
+
+TriangleSoup faceted_sphere(int subdivisions) {
+  TriangleSoup soup = exploded(icosphere(subdivisions, 0, 0));
+  soup.attributes = {flat_normals(soup)};
+  return soup;
+}
+
+TriangleSoup faceted_cylinder(int m, int n) {
+  TriangleSoup soup;
+  std::vector<float> normals;
+  for (int i = 0; i < m; ++i) {
+    const double middle = kTurn * (i + 0.5) / m;
+    const auto first = static_cast<Index>(soup.positions.size());
+    for (int j = 0; j <= n; ++j)
+      for (int k = 0; k < 2; ++k) {
+        const double angle = kTurn * ((i + k) % m) / m;
+        add_point(soup, std::cos(angle), std::sin(angle), 2.0 * j / n);
+        append_vector(normals, {std::cos(middle), std::sin(middle), 0});
+      }
+    add_squares(soup, 1, n, [&](int k, int j) { return static_cast<Index>(first + 2 * static_cast<Index>(j) + static_cast<Index>(k)); });
+  }
+  soup.attributes = {float_attribute("NORMAL", 3, normals)};
+  return soup;
+}
+
+TriangleSoup mirrored_terrain(int n) {
+  TriangleSoup soup = terrain(n, 31);
+  std::vector<float> uvs;
+  for (const Vec3f& p : soup.positions) uvs.insert(uvs.end(), {std::abs(p.x - 0.5F), p.y});
+  soup.attributes = {float_attribute("TEXCOORD_0", 2, uvs)};
+  return soup;
+}
+
+TriangleSoup slit_grid(int n) {
+  TriangleSoup soup = grid(n, 0.02, 21);
+  std::vector<float> uvs;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) uvs.insert(uvs.end(), {float(i) / float(n), float(j) / float(n)});
+  // The points of the middle column below the middle have a second wedge, for the faces to their left.
+  std::map<Index, Index> twin;
+  for (int j = 0; j < n / 2; ++j) {
+    const auto point = static_cast<Index>(j * (n + 1) + n / 2);
+    twin[point] = static_cast<Index>(soup.positions.size());
+    soup.positions.push_back(soup.positions[point]);
+    uvs.insert(uvs.end(), {uvs[2 * point] - 0.005F * float(n / 2 - j), uvs[2 * point + 1]});
+  }
+  for (std::size_t t = 0; t < soup.indices.size(); t += 3) {
+    float x = 0;
+    for (std::size_t k = 0; k < 3; ++k) x += soup.positions[soup.indices[t + k]].x / 3;
+    for (std::size_t k = 0; k < 3 && x < 0.5F; ++k)
+      if (const auto found = twin.find(soup.indices[t + k]); found != twin.end()) soup.indices[t + k] = found->second;
+  }
+  soup.attributes = {float_attribute("TEXCOORD_0", 2, uvs)};
+  return soup;
+}
+
+TriangleSoup skinned_cylinder(int m, int n) {
+  TriangleSoup soup = cylinder(m, n);
+  std::vector<float> weights;
+  Attribute joints;
+  joints.name = "JOINTS_0";
+  joints.type = ComponentType::UInt8;
+  joints.component_count = 4;
+  for (const Vec3f& p : soup.positions) {
+    const float along = std::clamp(2 * p.z - 0.5F, 0.0F, 1.0F);
+    weights.insert(weights.end(), {1 - along, along, 0, 0});
+    for (const int joint : {0, 1, 0, 0}) joints.data.push_back(static_cast<std::byte>(joint));
+  }
+  soup.attributes = {joints, float_attribute("WEIGHTS_0", 4, weights)};
+  return soup;
+}
+
+TriangleSoup morph_grid(int n) {
+  TriangleSoup soup = grid(n, 0, 0);
+  std::vector<float> target;
+  for (const Vec3f& p : soup.positions) {
+    const float x = 4 * p.x - 2;
+    const float y = 4 * p.y - 2;
+    target.insert(target.end(), {0, 0, 0.5F * std::exp(-x * x - y * y)});
+  }
+  soup.attributes = {float_attribute("TARGET_0:POSITION", 3, target)};
+  return soup;
+}
+
+TriangleSoup walled_cube(int n) {
+  TriangleSoup soup = cube(n);
+  append(soup, sheet(n, n, [&](int i, int j) { return std::array{0.5, double(i) / n, double(j) / n}; }), {0, 0, 0});
+  return soup;
+}
+
+TriangleSoup cubes_at_an_edge(int n) {
+  TriangleSoup soup = cube(n);
+  append(soup, cube(n), {1, 1, 0});
+  return soup;
+}
+
+TriangleSoup spheres_at_a_vertex(int subdivisions) {
+  TriangleSoup soup = icosphere(subdivisions, 0, 0);
+  TriangleSoup mirrored = soup;
+  const Vec3f at = soup.positions[0];
+  for (Vec3f& p : mirrored.positions) p = {2 * at.x - p.x, 2 * at.y - p.y, 2 * at.z - p.z};
+  for (std::size_t t = 0; t < mirrored.indices.size(); t += 3) std::swap(mirrored.indices[t], mirrored.indices[t + 1]);
+  append(soup, mirrored, {0, 0, 0});
+  return soup;
+}
+
 TriangleSoup mobius_strip(int m, int n) {
   TriangleSoup soup;
   for (int i = 0; i < m; ++i) {
@@ -406,6 +539,15 @@ std::vector<NamedShape> all_shapes() {
       {"seam sphere 12 x 8", seam_sphere(12, 8), true, 2},
       {"two-material grid 8", two_material_grid(8), true, 1},
       {"two-material sphere 2", two_material_sphere(2), true, 2},
+      {"faceted sphere 2", faceted_sphere(2), true, 2},
+      {"faceted cylinder 12 x 3", faceted_cylinder(12, 3), true, 0},
+      {"mirrored terrain 12", mirrored_terrain(12), true, 1},
+      {"slit grid 8", slit_grid(8), true, 1},
+      {"skinned cylinder 10 x 6", skinned_cylinder(10, 6), true, 0},
+      {"morph grid 8", morph_grid(8), true, 1},
+      {"walled cube 4", walled_cube(4), false, std::nullopt},
+      {"cubes at an edge 3", cubes_at_an_edge(3), false, std::nullopt},
+      {"spheres at a vertex 1", spheres_at_a_vertex(1), false, std::nullopt},
       {"moebius strip 14 x 2", mobius_strip(14, 2), false, std::nullopt},
       {"bow-tie", bow_tie(), false, std::nullopt},
       {"three at one edge", three_at_one_edge(), false, std::nullopt},

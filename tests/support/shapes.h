@@ -49,7 +49,26 @@ TriangleSoup two_material_grid(int n);
 /// A sphere whose northern and southern halves have materials 0 and 1.
 TriangleSoup two_material_sphere(int subdivisions);
 
+/// An icosphere whose faces each have their own normal: every edge splits wedges, every vertex is a corner.
+TriangleSoup faceted_sphere(int subdivisions);
+/// A tube of m × n squares with one normal for each of its m sides, as low-poly models have them.
+TriangleSoup faceted_cylinder(int m, int n);
+/// A terrain whose texture coordinates are mirrored at x = ½, n even: wedges agree across it, orientations do not.
+TriangleSoup mirrored_terrain(int n);
+/// A hilly grid with a seam of texture coordinates from one border to the middle, where it ends.
+TriangleSoup slit_grid(int n);
+/// A tube with two joints whose weights change along it.
+TriangleSoup skinned_cylinder(int m, int n);
+/// A flat grid with a morph target that raises a hill.
+TriangleSoup morph_grid(int n);
+
 // Not manifold.
+/// A cube with a wall inside: three faces at each edge where it meets the sides; n even.
+TriangleSoup walled_cube(int n);
+/// Two cubes that share an edge: four faces at each of its edges.
+TriangleSoup cubes_at_an_edge(int n);
+/// Two spheres that share one vertex.
+TriangleSoup spheres_at_a_vertex(int subdivisions);
 /// A band with half a twist: its faces cannot all agree on winding.
 TriangleSoup mobius_strip(int m, int n);
 /// Two fans that share one vertex and no edge.

@@ -20,7 +20,7 @@ struct TriangleSoup {
 struct AssemblyReport {
   std::size_t nonfinite_faces = 0;    ///< dropped: a corner is NaN or infinite
   std::size_t degenerate_faces = 0;   ///< dropped: two corners at one position
-  std::size_t duplicate_faces = 0;    ///< dropped: same corners, same winding as an earlier one
+  std::size_t duplicate_faces = 0;    ///< dropped: same corners, winding and material as an earlier one
   std::size_t unused_points = 0;      ///< dropped: no triangle uses them
   std::size_t nonmanifold_edges = 0;  ///< cut: more than two triangles, or two that disagree on winding
   std::size_t cut_vertices = 0;       ///< vertices that became several, one for each sheet
@@ -35,7 +35,7 @@ struct AssembledMesh {
 ///
 /// Points with equal coordinates become one vertex; points that also agree in every attribute byte become one wedge.
 /// Edges of more than two triangles and bow-tie vertices are cut: each sheet gets a vertex of its own, at the same
-/// position. `mesh_kinds` recognises those copies by their equal positions and locks them, so no crack can open.
+/// position. `Connectivity` recognises those copies by their equal positions; they are removed together, so no crack opens.
 ///
 /// Pre: array lengths agree. Errors: InvalidArgument where an index or a length is out of range. Cost: O(n log n).
 Result<AssembledMesh> assemble(const TriangleSoup& soup);

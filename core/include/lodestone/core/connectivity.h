@@ -17,7 +17,7 @@ enum class VertexKind : std::uint8_t {
   Border,       ///< open ring, no constrained edge but its two border edges
   Feature,      ///< closed ring, exactly two constrained edges: a feature line passes through
   Corner,       ///< any other number of constrained edges
-  NonManifold,  ///< one of several copies of a vertex that was cut into sheets
+  NonManifold,  ///< one of several copies of a vertex that was cut into sheets, to be removed together
   Isolated,     ///< no face uses it
 };
 
@@ -82,6 +82,12 @@ class Connectivity {
 
   /// Fills `star` with the faces around `vertex`; pre: has_vertex(vertex).
   void gather_star(Index vertex, Star& star) const;
+  /// The next of the vertex's copies: those at the same position, in a circle. Itself where it is the only one.
+  Index next_copy(Index vertex) const { return next_copy_.empty() ? vertex : next_copy_[vertex]; }
+  bool is_copy(Index vertex) const { return next_copy(vertex) != vertex; }
+  /// The first of the vertex's copies: what stands for the position.
+  Index site(Index vertex) const { return site_.empty() ? vertex : site_[vertex]; }
+
   VertexKind kind(Index vertex) const;
   VertexKind kind(Index vertex, const Star& star) const;
   /// Whether an edge joins the two vertices.
@@ -97,13 +103,14 @@ class Connectivity {
 
   Result<void> join_faces();
   Result<void> anchor_vertices();
-  void mark_copies(const Mesh& mesh);
+  void link_copies(const Mesh& mesh);
   Index first_corner(Index corner) const;
 
   std::vector<Index> corner_wedge_;
   std::vector<Index> opposite_;
   std::vector<Index> vertex_corner_;
-  std::vector<std::uint8_t> is_copy_;  // per vertex
+  std::vector<Index> next_copy_;           // per vertex, empty where there are no copies
+  std::vector<Index> site_;                // the same
   std::vector<std::uint8_t> crease_;   // per corner, empty where there are none
   const std::vector<Index>* wedge_vertex_ = nullptr;
   const std::vector<Index>* face_material_ = nullptr;

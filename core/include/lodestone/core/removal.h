@@ -9,16 +9,25 @@
 
 namespace lodestone {
 
+/// How the polygon of a sector lies around the removed vertex v; m is its corner count.
+enum class SectorShape : std::uint8_t {
+  Open,    ///< p0 … p(m−1) run from one constrained spoke to the next: m − 1 fine faces, m − 2 coarse ones
+  Closed,  ///< p0 … p(m−1) are the whole ring: m fine faces, m − 2 coarse ones
+  Moved,   ///< p(m−1) is the vertex v moves to, away from this sector; the others as in Open: m − 2 faces before and after
+  Lone,    ///< a face of a piece that vanishes as a whole: p0 p1, one fine face, no coarse one
+};
+
 /// One side of a removal; the rules are those of `SectorHeader` in lod: coarse face i takes the place of fine face i.
 struct SectorPatch {
   Index center = kNoIndex;                 ///< the removed vertex's wedge on this side
-  bool closed = false;                     ///< whether the polygon is a closed ring
+  SectorShape shape = SectorShape::Open;
   std::vector<Index> polygon;              ///< wedges, counter-clockwise
-  std::vector<Index> faces;                ///< fine faces: one for each polygon edge, but for the closing edge if open
+  std::vector<Index> faces;                ///< fine faces (v, p(i), p(i+1))
   std::vector<std::uint8_t> rotation;      ///< which corner of each fine face is the removed vertex
   std::vector<PolygonTriangle> triangles;  ///< the coarse faces
   std::vector<Index> anchors;              ///< filled by remove_vertex: the polygon vertices' anchors before it
   Index lone_outer = kNoIndex;             ///< filled by remove_vertex where polygon size is 2: the corner beyond
+  bool lone_crease = false;                ///< the same: whether that corner faced a crease
   bool starts_at_crease = false;           ///< whether the spoke to polygon corner 0 is a crease
 
   std::size_t face_count() const { return faces.size(); }
@@ -28,19 +37,36 @@ struct SectorPatch {
 struct RemovalRecord {
   Index vertex = kNoIndex;
   Index vertex_corner = kNoIndex;    ///< the vertex's anchor before the removal
-  std::vector<SectorPatch> sectors;  ///< one, or two where a feature line passes through the vertex
+  Index target = kNoIndex;           ///< the vertex it moves to; kNoIndex where its hole is retriangulated
+  bool open_star = false;            ///< whether the vertex lies on a border
+  std::vector<SectorPatch> sectors;  ///< counter-clockwise
 };
 
-/// Fills `sectors` with the polygons around a vertex, one for each sector of its star; `triangles` stay empty.
-void describe_sectors(const Connectivity& mesh, const Star& star, std::vector<SectorPatch>& sectors);
+/// Describes a removal whose hole is retriangulated: one polygon for each sector of the star. `triangles` stay empty.
+/// Pre: the vertex is interior, border or feature.
+void describe_removal(const Connectivity& mesh, const Star& star, RemovalRecord& record);
+
+/// Describes a removal that moves the vertex to a neighbour, taking along every constrained edge that meets at it: the
+/// one kind of removal that corners have. `target` is the number of a spoke: the neighbour before face `target` of the
+/// star, or the last one of an open star. Each polygon is to be filled with the fan of that neighbour. In the sectors
+/// away from it the neighbour's wedge, `polygon.back()`, is any of its wedges; the caller may put a better one.
+/// Pre: the star has a constrained spoke other than `target`.
+void describe_collapse(const Connectivity& mesh, const Star& star, Index target, RemovalRecord& record);
 
 /// Removes a vertex and fills its hole with the triangles given in `record.sectors`.
 ///
-/// Pre: `record.sectors` comes from `describe_sectors`, with polygon_size − 2 triangles each that triangulate the
-/// polygon; the vertex is interior, border or feature; the removal keeps the mesh simple (no edge appears twice).
+/// Pre: `record` comes from one of the functions above, with polygon_size − 2 triangles in each sector that triangulate
+/// the polygon; the removal keeps the mesh simple (no edge appears twice).
 void remove_vertex(Connectivity& mesh, RemovalRecord& record);
 
 /// Undoes the last removal: the mesh is again as it was before it, byte for byte.
 void restore_vertex(Connectivity& mesh, const RemovalRecord& record);
+
+/// Removes everything that hangs together with a vertex, over edges and over copies of vertices.
+///
+/// Returns one record for each vertex and copy, copies of one vertex next to each other. A record's sectors are its
+/// faces that no earlier record has, each a lone one; vertices without any come last. Only whole components can go this
+/// way, so there is no function that undoes it; a `Cursor` over the records goes both ways.
+std::vector<RemovalRecord> remove_component(Connectivity& mesh, Index vertex);
 
 }  // namespace lodestone

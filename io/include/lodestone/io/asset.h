@@ -57,7 +57,8 @@ double screen_coverage(double diagonal, double deviation);
 /// A multi-LOD file as read back, its scene flattened into world space.
 struct Asset {
   struct Level {
-    Mesh mesh;                      ///< decoded from Draco or plain accessors
+    Mesh mesh;                      ///< decoded from Draco or plain accessors, assembled: clean and without doubles
+    std::uint64_t face_count = 0;   ///< drawn, as stored
     std::uint64_t byte_length = 0;  ///< of its geometry, each mesh once
     double maximum_deviation = 0;   ///< from extras, world units: the largest of all meshes; 0 where absent
     double mean_deviation = 0;      ///< weighted by the area that each mesh covers in the world

@@ -52,6 +52,8 @@ class Scene {
 
   /// The meshes to make levels of, in the document's order.
   const std::vector<SceneMesh>& meshes() const;
+  /// What became of the triangles of meshes that have none left, which stay in the document as they are.
+  const std::vector<AssemblyReport>& dropped() const;
   /// What is left out of the scene or changed in it, one sentence each.
   const std::vector<std::string>& notes() const;
   /// The box of all instances in the world, skinned ones posed at rest; of size 0 where there are none.

@@ -6,22 +6,28 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/removal.h>
 #include <lodestone/core/result.h>
 
 namespace lodestone {
 
 /// One side of a removed vertex's star between two constrained edges; the whole star where there are none.
 ///
-/// The polygon p0 … p(m−1) lists the ring counter-clockwise. The *fine* faces are the triangles (v, p(i), p(i+1)): m of
-/// them in a closed sector, m − 1 in an open one. The *coarse* faces are the m − 2 triangles that replaced them.
-/// Coarse face i and fine face i share one slot of their group's index buffer; the remaining fine faces (two of a
-/// closed sector, one of an open one) are appended to it.
+/// The polygon p0 … p(m−1) lists the ring counter-clockwise; `SectorShape` says how it lies. The *fine* faces are the
+/// triangles (v, p(i), p(i+1)), m − 2 + appended_face_count(shape) of them. The *coarse* faces are the m − 2 triangles
+/// that replaced them. Coarse face i and fine face i share one slot of their group's index buffer; the remaining fine
+/// faces are appended to it.
 struct SectorHeader {
-  std::uint16_t polygon_size = 0;  ///< m: ≥ 3 if closed, ≥ 2 if open
+  std::uint16_t polygon_size = 0;  ///< m: ≥ 3; ≥ 2 if open, 2 if lone
   std::uint16_t group = 0;         ///< which index buffer (material) the faces belong to
-  std::uint8_t closed = 0;         ///< 1: the ring closes, 0: the polygon is closed by the new edge p(m−1) p0
-  std::uint8_t wedge = 0;          ///< which of the record's new wedges is this side's centre
+  std::uint16_t wedge = 0;         ///< which of the record's new wedges is this side's centre
+  SectorShape shape = SectorShape::Open;
 };
+
+/// Returns how many more faces a sector has after its record than before: 1 if open or lone, 2 if closed, 0 if moved.
+constexpr int appended_face_count(SectorShape shape) {
+  return shape == SectorShape::Closed ? 2 : shape == SectorShape::Moved ? 0 : 1;
+}
 
 /// The faces that share a material; each group has an index buffer of its own.
 struct FaceGroup {
@@ -34,6 +40,7 @@ struct FaceGroup {
 ///
 /// *Numbering.* Vertices, wedges and faces stand in the order of their creation: record k creates vertex
 /// base_vertex_count + k and the wedges from record_wedge_begin[k] on, and appends faces at the end of its groups.
+/// The copies that a vertex was cut into (see `assemble`) are one vertex again, and leave by one record.
 /// Position p, in 0 … record_count(), is the level after the first p records; it uses the first
 /// base_vertex_count + p vertices. Refining appends, coarsening pops.
 ///
@@ -77,13 +84,17 @@ struct ProgressiveMesh {
 /// Returns the faces of every position, record_count() + 1 entries, ascending.
 std::vector<Index> face_counts(const ProgressiveMesh& mesh);
 
+/// Returns whether every piece of the mesh is there as a whole, or not at all, at a position. A piece that vanishes does
+/// so over several records, one for each of its vertices; between them stands a part of it.
+bool is_whole(const ProgressiveMesh& mesh, Index position);
+
 /// Returns the coarsest position whose deviation bound is at most `deviation` (mesh units); record_count() at worst.
 Index position_for_deviation(const ProgressiveMesh& mesh, double deviation);
 
 /// Returns the coarsest position whose curvature error is at most `epsilon` (the metric's own unit).
 Index position_for_curvature_error(const ProgressiveMesh& mesh, double epsilon);
 
-/// Returns the finest position with at most `face_count` faces; 0 where even the base mesh has more.
+/// Returns the finest whole position with at most `face_count` faces; 0 where even the base mesh has more.
 Index position_for_faces(const ProgressiveMesh& mesh, std::uint64_t face_count);
 
 /// Checks every length, index and count of a mesh that came from outside, so that any cursor over it stays in bounds.

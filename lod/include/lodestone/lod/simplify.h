@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/result.h>
@@ -36,10 +37,31 @@ struct StopCriteria {
   double max_deviation = std::numeric_limits<double>::infinity();         ///< mesh units, of the two-sided bound
 };
 
+/// How much differences of attributes count beside distances: factors, 0 for not at all. What is compared is the
+/// attribute of a removed vertex with that of the surface in its place. A vertex's own attributes never change.
+struct AttributeWeights {
+  double normal = 0.25;   ///< NORMAL: difference of unit vectors, times the star's radius
+  double texcoord = 1;    ///< TEXCOORD_n: how far the texture slides over the surface
+  double color = 0.5;     ///< COLOR_n: difference of values, times the star's radius
+  double skin = 1;        ///< JOINTS_n, WEIGHTS_n: share of weight that goes to other joints, times the star's radius
+  double target = 1;      ///< morph targets ("TARGET_i:POSITION"): difference of displacements
+};
+
+/// A vertex of at least this importance stays.
+inline constexpr float kLockingImportance = 1000;
+
 struct SimplifyOptions {
   Metric metric = Metric::Hybrid;
   Normalisation normalisation = Normalisation::Integral;
   Reference reference = Reference::Original;
+  AttributeWeights weights;
+  /// Hard edges by angle: where two faces' normals differ by more than this, in radians, the edge between them is kept
+  /// as a line. Unset: only edges whose attributes or materials differ.
+  std::optional<double> crease_angle;
+  bool lock_border = false;       ///< keep every vertex of an open border
+  /// Let the last piece of the mesh go, too, so that the base mesh is empty. Smaller pieces always may.
+  bool vanish = false;
+  std::vector<float> importance;  ///< one per vertex of the mesh, or empty: multiplies the vertex's cost; 0 or more
   StopCriteria stop;
   /// Measure the deviation each time this share of the faces has gone. In between, and everywhere where it is 0, bounds
   /// add up what each removal may have moved: safe, but wider than the truth.
@@ -53,16 +75,21 @@ enum class StopReason { Faces, CurvatureError, Deviation, Stuck, Cancelled };
 
 /// What kept the remaining vertices, where the run ended for want of legal removals.
 struct BlockedCounts {
-  std::size_t locked = 0;    ///< corner, non-manifold copy or other kind this version does not remove
+  std::size_t locked = 0;    ///< by the options: border or importance
   std::size_t flip = 0;      ///< every retriangulation turns a triangle over or makes it degenerate
   std::size_t link = 0;      ///< every retriangulation repeats an edge of the mesh
   std::size_t ring = 0;      ///< more neighbours than a record holds
+  std::size_t error = 0;     ///< free to go, but beyond a limit on the error
 };
 
 struct SimplifyResult {
   ProgressiveMesh mesh;
   StopReason stop_reason = StopReason::Stuck;
   BlockedCounts blocked;          ///< of the base mesh's vertices
+  /// By position, as `mesh.deviation`: the most that any removal between the full mesh and the position was charged. It
+  /// never falls towards the base, so that meshes simplified alike can share faces by it. Mesh units, but radians for
+  /// Metric::Gaussian.
+  std::vector<float> charge;
   std::size_t evaluation_count = 0;
 };
 

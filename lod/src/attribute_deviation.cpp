@@ -1,0 +1,129 @@
+#include <lodestone/lod/attribute_deviation.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include <lodestone/lod/deviation.h>
+
+#include "attribute_values.h"
+#include "triangle.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+/// An attribute that both meshes have.
+struct Shared {
+  std::size_t width = 0;
+  bool is_direction = false;
+  std::vector<float> original;
+  std::vector<float> level;
+  AttributeDeviation deviation;
+};
+
+std::vector<Shared> shared_attributes(const Mesh& original, const Mesh& level) {
+  std::vector<Shared> shared;
+  for (const Attribute& a : original.attributes) {
+    if (a.name.starts_with("JOINTS_") || a.name.starts_with("WEIGHTS_")) continue;
+    const auto b = std::find_if(level.attributes.begin(), level.attributes.end(), [&](const Attribute& other) {
+      return other.name == a.name && other.component_count == a.component_count;
+    });
+    if (b == level.attributes.end()) continue;
+    shared.push_back({a.component_count, a.name == "NORMAL", attribute_values(a), attribute_values(*b), {a.name}});
+  }
+  return shared;
+}
+
+/// The faces of one material as a mesh of their own, and where they came from.
+struct MaterialFaces {
+  Mesh mesh;
+  std::vector<Index> source_face;
+  std::optional<SurfaceIndex> surface;
+};
+
+std::map<Index, MaterialFaces> split(const Mesh& level) {
+  std::map<Index, MaterialFaces> parts;
+  for (Index f = 0; f < level.face_count(); ++f) {
+    MaterialFaces& part = parts[level.material_of(f)];
+    if (part.source_face.empty()) part.mesh.positions = level.positions, part.mesh.wedge_vertex = level.wedge_vertex;
+    part.source_face.push_back(f);
+    for (Index k = 0; k < 3; ++k) part.mesh.corner_wedge.push_back(level.corner_wedge[3 * f + k]);
+  }
+  for (auto& [material, part] : parts) part.surface.emplace(part.mesh);
+  return parts;
+}
+
+std::array<double, 4> blend(const std::vector<float>& values, std::size_t width, const Mesh& mesh, Index face,
+                            const std::array<double, 3>& weights) {
+  std::array<double, 4> sum{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < std::min<std::size_t>(width, 4); ++i)
+      sum[i] += weights[k] * static_cast<double>(values[mesh.corner_wedge[3 * face + k] * width + i]);
+  return sum;
+}
+
+double difference(const Shared& shared, const std::array<double, 4>& a, const std::array<double, 4>& b) {
+  if (shared.is_direction) return angle_between({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(squares);
+}
+
+/// Calls `visit(face, weights, area)` for points spread evenly over every face: the centroids of its n² parts.
+template <class Visit>
+void for_each_sample(const Mesh& mesh, std::size_t sample_count, const Visit& visit) {
+  const double per_face = static_cast<double>(sample_count) / static_cast<double>(mesh.face_count());
+  const auto n = static_cast<int>(std::clamp(std::sqrt(per_face), 1.0, 16.0));
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Vec3 a = mesh.corner_position(3 * f);
+    const double area = 0.5 * length(cross(mesh.corner_position(3 * f + 1) - a, mesh.corner_position(3 * f + 2) - a));
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; i + j < n; ++j)
+        for (int down = 0; down <= (i + j + 1 < n ? 1 : 0); ++down) {
+          const double u = (i + (down + 1) / 3.0) / n;
+          const double v = (j + (down + 1) / 3.0) / n;
+          visit(f, std::array{1 - u - v, u, v}, area / (n * n));
+        }
+  }
+}
+
+}  // namespace
+
+std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const Mesh& level, std::size_t sample_count) {
+  std::vector<Shared> shared = shared_attributes(original, level);
+  std::vector<AttributeDeviation> result;
+  if (shared.empty() || original.face_count() == 0) return result;
+  const std::map<Index, MaterialFaces> parts = split(level);
+  double total = 0;
+  for_each_sample(original, sample_count, [&](Index face, const std::array<double, 3>& weights, double area) {
+    const auto part = parts.find(original.material_of(face));
+    if (part == parts.end()) return;  // all of its material is gone: there is nothing to compare with
+    Vec3 p;
+    for (Index k = 0; k < 3; ++k) p += original.corner_position(3 * face + k) * weights[k];
+    const SurfaceIndex::Hit hit = part->second.surface->nearest(p, std::numeric_limits<double>::infinity());
+    if (hit.face == kNoIndex) return;
+    const Index there = part->second.source_face[hit.face];
+    const Barycentric at = nearest_weights(hit.point, triangle_of(level, there));
+    total += area;
+    for (Shared& s : shared) {
+      const double d = difference(s, blend(s.original, s.width, original, face, weights),
+                                  blend(s.level, s.width, level, there, at.weights));
+      s.deviation.mean += area * d;
+      s.deviation.rms += area * d * d;
+      s.deviation.maximum = std::max(s.deviation.maximum, d);
+    }
+  });
+  for (Shared& s : shared) {
+    if (total > 0) s.deviation.mean /= total, s.deviation.rms = std::sqrt(s.deviation.rms / total);
+    result.push_back(std::move(s.deviation));
+  }
+  return result;
+}
+
+}  // namespace lodestone

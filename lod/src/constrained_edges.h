@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+
+namespace lodestone::detail {
+
+/// An edge of a mesh: its faces' corners that face it, where there are two that agree; else kNoIndex.
+struct MeshEdge {
+  std::array<Index, 2> vertices{};
+  std::array<Index, 2> corners{kNoIndex, kNoIndex};
+  bool constrained = false;  ///< border, seam, material border, or more than two faces
+};
+
+/// Lists the edges of any mesh, sorted by their vertices. Unlike `Connectivity` it takes meshes that are not manifold.
+std::vector<MeshEdge> list_edges(const Mesh& mesh);
+
+}  // namespace lodestone::detail

@@ -1,0 +1,137 @@
+#include "edge_turns.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "attribute_cost.h"
+#include "face_guard.h"
+#include "triangle.h"
+
+namespace lodestone::detail {
+namespace {
+
+constexpr double kGain = 0.98;  // turned where the squared distances fall below this share
+
+/// The samples of each face.
+class SamplesByFace {
+ public:
+  SamplesByFace(std::size_t face_count, std::span<const SurfaceSample> samples)
+      : samples_(samples), begin_(face_count + 1, 0), number_(samples.size()) {
+    for (const SurfaceSample& sample : samples) ++begin_[sample.face + 1];
+    for (std::size_t f = 0; f < face_count; ++f) begin_[f + 1] += begin_[f];
+    std::vector<Index> next(begin_.begin(), begin_.end() - 1);
+    for (Index i = 0; i < samples.size(); ++i) number_[next[samples[i].face]++] = i;
+  }
+  template <class Visit>
+  void for_each(Index face, const Visit& visit) const {
+    for (Index i = begin_[face]; i < begin_[face + 1]; ++i) visit(samples_[number_[i]]);
+  }
+
+ private:
+  std::span<const SurfaceSample> samples_;
+  std::vector<Index> begin_;
+  std::vector<Index> number_;
+};
+
+class EdgeTurner {
+ public:
+  EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<const SurfaceSample> samples)
+      : mesh_(mesh), edges_(edges), by_face_(mesh.face_count(), samples), attributes_(mesh, {0, 0, 0, 0, 0}) {}
+
+  std::size_t run() {
+    std::size_t count = 0;
+    taken_.assign(mesh_.face_count(), 0);
+    for (const MeshEdge& edge : edges_) count += !edge.constrained && turn(edge) ? 1 : 0;
+    return count;
+  }
+
+ private:
+  /// The two faces as (a, b, c) and (b, a, d): they become (a, d, c) and (d, b, c).
+  struct Quad {
+    std::array<Index, 2> face;
+    Index a, b, c, d;  // wedges
+  };
+
+  bool turn(const MeshEdge& edge) {
+    const Index corner = edge.corners[0];
+    const Index across = edge.corners[1];
+    const Quad quad{{face_of_corner(corner), face_of_corner(across)},
+                    mesh_.corner_wedge[next_corner(corner)],
+                    mesh_.corner_wedge[previous_corner(corner)],
+                    mesh_.corner_wedge[corner],
+                    mesh_.corner_wedge[across]};
+    if (taken_[quad.face[0]] != 0 || taken_[quad.face[1]] != 0 || has_edge(quad.c, quad.d)) return false;
+    if (!keeps_shape(quad) || turns_texture(quad) || !is_nearer(quad)) return false;
+    for (std::size_t i = 0; i < 2; ++i) taken_[quad.face[i]] = 1;
+    set_face(quad.face[0], {quad.a, quad.d, quad.c});
+    set_face(quad.face[1], {quad.d, quad.b, quad.c});
+    added_.push_back(std::minmax(vertex(quad.c), vertex(quad.d)));
+    return true;
+  }
+
+  Index vertex(Index wedge) const { return mesh_.wedge_vertex[wedge]; }
+  Vec3 position(Index wedge) const { return Vec3(mesh_.positions[vertex(wedge)]); }
+  Triangle triangle(Index a, Index b, Index c) const {
+    return {mesh_.positions[vertex(a)], mesh_.positions[vertex(b)], mesh_.positions[vertex(c)]};
+  }
+  void set_face(Index face, const std::array<Index, 3>& wedges) {
+    std::copy(wedges.begin(), wedges.end(), mesh_.corner_wedge.begin() + 3 * std::ptrdiff_t{face});
+  }
+
+  /// Edges that were there at the start count even where they have been turned since: the next pass may use their place.
+  bool has_edge(Index c, Index d) const {
+    const std::pair<Index, Index> wanted = std::minmax(vertex(c), vertex(d));
+    if (wanted.first == wanted.second) return true;
+    const auto found = std::lower_bound(edges_.begin(), edges_.end(), wanted, [](const MeshEdge& edge, const auto& key) {
+      return std::pair(edge.vertices[0], edge.vertices[1]) < key;
+    });
+    const bool there = found != edges_.end() && found->vertices[0] == wanted.first && found->vertices[1] == wanted.second;
+    return there || std::find(added_.begin(), added_.end(), wanted) != added_.end();
+  }
+
+  bool keeps_shape(const Quad& q) const {
+    const Vec3 a = position(q.a), b = position(q.b), c = position(q.c), d = position(q.d);
+    const Vec3 before = normalized(cross(b - a, c - a)) + normalized(cross(a - b, d - b));
+    return is_upright(a, d, c, before) && is_upright(d, b, c, before);
+  }
+
+  bool turns_texture(const Quad& q) const {
+    for (std::size_t t = 0; t < attributes_.texture_count(); ++t) {
+      const double before = attributes_.texture_area(t, q.a, q.b, q.c) + attributes_.texture_area(t, q.b, q.a, q.d);
+      if (before * attributes_.texture_area(t, q.a, q.d, q.c) < 0) return true;
+      if (before * attributes_.texture_area(t, q.d, q.b, q.c) < 0) return true;
+    }
+    return false;
+  }
+
+  bool is_nearer(const Quad& q) const {
+    double before = 0;
+    double after = 0;
+    const Triangle first = triangle(q.a, q.d, q.c);
+    const Triangle second = triangle(q.d, q.b, q.c);
+    for (const Index face : q.face)
+      by_face_.for_each(face, [&](const SurfaceSample& sample) {
+        before += sample.weight * sample.squared_distance;
+        const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
+        const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
+        after += sample.weight * std::min(near_first, near_second);
+      });
+    return after < kGain * before;
+  }
+
+  Mesh& mesh_;
+  std::span<const MeshEdge> edges_;
+  SamplesByFace by_face_;
+  AttributeCost attributes_;
+  std::vector<std::uint8_t> taken_;
+  std::vector<std::pair<Index, Index>> added_;
+};
+
+}  // namespace
+
+std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<const SurfaceSample> samples) {
+  return EdgeTurner(mesh, edges, samples).run();
+}
+
+}  // namespace lodestone::detail

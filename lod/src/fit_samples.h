@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+
+namespace lodestone::detail {
+
+/// A point of the original surface, and where on the level it belongs at present.
+struct SurfaceSample {
+  Vec3 position;
+  double weight = 0;  ///< the area it stands for
+  Index face = kNoIndex;
+  std::array<double, 3> weights{};
+  double squared_distance = 0;
+};
+
+/// Points of the original: its vertices and its faces' centroids, or an even choice of about `most` of them.
+class SurfaceSamples {
+ public:
+  SurfaceSamples(const Mesh& original, std::size_t most);
+  std::vector<SurfaceSample>& all() { return samples_; }
+  const std::vector<SurfaceSample>& all() const { return samples_; }
+
+ private:
+  std::vector<SurfaceSample> samples_;
+};
+
+/// A point of one of the original's constrained lines.
+struct LineSample {
+  Vec3 position;
+  double length = 0;  ///< that it stands for
+};
+
+class LineSamples {
+ public:
+  explicit LineSamples(const Mesh& original);
+  const std::vector<LineSample>& all() const { return samples_; }
+
+ private:
+  std::vector<LineSample> samples_;
+};
+
+}  // namespace lodestone::detail

@@ -1,0 +1,60 @@
+#include "pieces.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace lodestone::detail {
+namespace {
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+  Index find(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(Index a, Index b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+}  // namespace
+
+Pieces::Pieces(const Mesh& mesh, const Connectivity& connectivity) : piece_(mesh.vertex_count(), kNoIndex) {
+  UnionFind joined(mesh.vertex_count());
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    joined.join(mesh.corner_vertex(3 * f), mesh.corner_vertex(3 * f + 1));
+    joined.join(mesh.corner_vertex(3 * f), mesh.corner_vertex(3 * f + 2));
+  }
+  for (Index v = 0; v < mesh.vertex_count(); ++v) joined.join(v, connectivity.site(v));
+  Index count = 0;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) piece_[v] = joined.find(v) == v ? count++ : piece_[joined.find(v)];
+  begin_.assign(count + 1, 0);
+  for (const Index piece : piece_) ++begin_[piece + 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  vertices_.resize(mesh.vertex_count());
+  std::vector<Index> next(begin_.begin(), begin_.end() - 1);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[next[piece_[v]]++] = v;
+  face_count_.assign(count, 0);
+  for (Index f = 0; f < mesh.face_count(); ++f) ++face_count_[piece_[mesh.corner_vertex(3 * f)]];
+  full_face_count_ = face_count_;
+  for (const std::size_t faces : face_count_) left_ += faces > 0 ? 1 : 0;
+}
+
+double Pieces::loss(const Mesh& mesh, Index piece) const {
+  const std::span<const Index> members = vertices(piece);
+  Vec3 center;
+  for (const Index v : members) center += Vec3(mesh.positions[v]);
+  center = center * (1 / static_cast<double>(members.size()));
+  double squares = 0;
+  for (const Index v : members) squares += squared_length(Vec3(mesh.positions[v]) - center);
+  const double width = 2 * std::sqrt(squares / static_cast<double>(members.size()));
+  return width * std::sqrt(static_cast<double>(members.size() + full_face_count_[piece]));
+}
+
+}  // namespace lodestone::detail

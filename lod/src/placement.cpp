@@ -1,0 +1,213 @@
+// Alternates between looking for each sample's nearest face and moving the vertices, after Hoppe, DeRose, Duchamp,
+// McDonald, Stuetzle: Mesh optimization (SIGGRAPH 1993). Lines are fitted to lines, so that borders and features slide
+// along themselves. What would turn a face over stays where it was.
+
+#include <lodestone/lod/placement.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <lodestone/lod/deviation.h>
+
+#include "attribute_lookup.h"
+#include "constrained_edges.h"
+#include "edge_turns.h"
+#include "face_guard.h"
+#include "fit_samples.h"
+#include "sparse_system.h"
+#include "triangle.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+constexpr int kSolverSteps = 60;
+constexpr double kStay = 0.02;        // how much a vertex wants to stay, of the weight of its samples
+constexpr double kCornerStay = 1e6;   // the same where lines end or meet
+constexpr double kAlong = 0.05;       // what distance along the surface or line counts, of distance from it
+constexpr double kLineWeight = 2;     // of lines against surfaces, at equal length
+constexpr int kTurningIterations = 3; // edges are turned in the first ones, and the vertices follow
+
+class Fitting {
+ public:
+  Fitting(const Mesh& original, Mesh& level, const PlacementOptions& options)
+      : level_(level),
+        options_(options),
+        edges_(list_edges(level)),
+        samples_(original, options.samples_per_face * level.face_count()),
+        lines_(original) {
+    classify();
+  }
+
+  void run();
+
+ private:
+  void classify();
+  double assign();
+  void turn_edges();
+  void assemble(SparseSystem& system) const;
+  void add_lines(SparseSystem& system) const;
+  void move();
+
+  Mesh& level_;
+  const PlacementOptions& options_;
+  std::vector<MeshEdge> edges_;
+  SurfaceSamples samples_;
+  LineSamples lines_;
+  std::vector<Index> corner_vertex_;
+  std::vector<std::uint8_t> line_ends_;  // by vertex: constrained edges, at most 255
+};
+
+void Fitting::classify() {
+  line_ends_.assign(level_.vertex_count(), 0);
+  for (const MeshEdge& edge : edges_)
+    for (const Index v : edge.vertices)
+      if (edge.constrained && line_ends_[v] < 255) ++line_ends_[v];
+}
+
+/// Finds the face nearest to each sample; returns the weighted sum of squared distances.
+double Fitting::assign() {
+  const SurfaceIndex surface(level_);
+  double sum = 0;
+  for (SurfaceSample& sample : samples_.all()) {
+    const SurfaceIndex::Hit hit =
+        surface.nearest(sample.position, std::numeric_limits<double>::infinity(), sample.face);
+    sample.face = hit.face;
+    const Barycentric at = nearest_weights(sample.position, triangle_of(level_, hit.face));
+    sample.weights = at.weights;
+    sample.squared_distance = at.squared_distance;
+    sum += sample.weight * at.squared_distance;
+  }
+  return sum;
+}
+
+void Fitting::turn_edges() {
+  if (detail::turn_edges(level_, edges_, samples_.all()) == 0) return;
+  edges_ = list_edges(level_);
+  assign();
+}
+
+void Fitting::assemble(SparseSystem& system) const {
+  system.clear();
+  for (const SurfaceSample& sample : samples_.all()) {
+    const Vec3 a = level_.corner_position(3 * sample.face);
+    const Vec3 normal = normalized(cross(level_.corner_position(3 * sample.face + 1) - a, level_.corner_position(3 * sample.face + 2) - a));
+    const Symmetric3 metric = Symmetric3::identity(kAlong * sample.weight) +
+                              Symmetric3::outer(normal, (1 - kAlong) * sample.weight);
+    system.add(&corner_vertex_[3 * std::size_t{sample.face}], sample.weights.data(), 3, sample.position, metric);
+  }
+  add_lines(system);
+  const double one = 1;
+  for (Index v = 0; v < level_.vertex_count(); ++v) {
+    const bool stays = line_ends_[v] != 0 && line_ends_[v] != 2;
+    const double weight = (stays ? kCornerStay : kStay) * system.stiffness(v);
+    system.add(&v, &one, 1, Vec3(level_.positions[v]), Symmetric3::identity(weight > 0 ? weight : 1));
+  }
+}
+
+/// Draws the level's lines to the original's. A sample of length l stands for an area of l times the edge it lies on.
+void Fitting::add_lines(SparseSystem& system) const {
+  Mesh segments;
+  segments.positions = level_.positions;
+  std::vector<const MeshEdge*> of_face;
+  for (const MeshEdge& edge : edges_) {
+    if (!edge.constrained) continue;
+    of_face.push_back(&edge);
+    for (const Index v : {edge.vertices[0], edge.vertices[1], edge.vertices[1]})
+      segments.corner_wedge.push_back(v);
+  }
+  if (of_face.empty()) return;
+  segments.wedge_vertex.resize(segments.positions.size());
+  for (Index v = 0; v < segments.wedge_vertex.size(); ++v) segments.wedge_vertex[v] = v;
+  const SurfaceIndex index(segments);
+  for (const LineSample& sample : lines_.all()) {
+    const SurfaceIndex::Hit hit = index.nearest(sample.position, std::numeric_limits<double>::infinity());
+    const MeshEdge& edge = *of_face[hit.face];
+    const Vec3 a(level_.positions[edge.vertices[0]]);
+    const Vec3 b(level_.positions[edge.vertices[1]]);
+    const double length_of_edge = length(b - a);
+    if (!(length_of_edge > 0)) continue;
+    const double t = std::clamp(dot(hit.point - a, b - a) / (length_of_edge * length_of_edge), 0.0, 1.0);
+    const double weights[2] = {1 - t, t};
+    const double weight = kLineWeight * sample.length * length_of_edge;
+    const Symmetric3 metric =
+        Symmetric3::identity(weight) + Symmetric3::outer((b - a) * (1 / length_of_edge), -(1 - kAlong) * weight);
+    system.add(edge.vertices.data(), weights, 2, sample.position, metric);
+  }
+}
+
+void Fitting::move() {
+  corner_vertex_.resize(level_.corner_wedge.size());
+  for (Index c = 0; c < corner_vertex_.size(); ++c) corner_vertex_[c] = level_.corner_vertex(c);
+  SparseSystem system(level_.vertex_count(), corner_vertex_);
+  assemble(system);
+  std::vector<Vec3> moved;
+  for (const Vec3f& p : level_.positions) moved.emplace_back(p);
+  system.solve(moved, kSolverSteps);
+  std::vector<Vec3f> positions;
+  for (const Vec3& p : moved)
+    positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+  keep_faces_upright(level_, positions);
+  level_.positions = std::move(positions);
+}
+
+void Fitting::run() {
+  double best = assign();
+  Mesh best_level = level_;
+  for (int i = 0; i < options_.iterations; ++i) {
+    if (i < kTurningIterations) turn_edges();
+    move();
+    const double error = assign();
+    if (!(error < best)) break;
+    best = error;
+    best_level = level_;
+  }
+  level_ = std::move(best_level);
+}
+
+/// Leaves out vertices and wedges that no face uses.
+Mesh compacted(const Mesh& mesh) {
+  std::vector<Index> vertex_of(mesh.vertex_count(), kNoIndex);
+  std::vector<Index> wedge_of(mesh.wedge_count(), kNoIndex);
+  std::vector<Index> source;
+  Mesh out;
+  for (const Index wedge : mesh.corner_wedge) {
+    if (wedge_of[wedge] == kNoIndex) {
+      Index& vertex = vertex_of[mesh.wedge_vertex[wedge]];
+      if (vertex == kNoIndex) {
+        vertex = static_cast<Index>(out.positions.size());
+        out.positions.push_back(mesh.positions[mesh.wedge_vertex[wedge]]);
+      }
+      wedge_of[wedge] = static_cast<Index>(source.size());
+      out.wedge_vertex.push_back(vertex);
+      source.push_back(wedge);
+    }
+    out.corner_wedge.push_back(wedge_of[wedge]);
+  }
+  out.face_material = mesh.face_material;
+  for (const Attribute& a : mesh.attributes) {
+    Attribute& copy = out.attributes.emplace_back(Attribute{a.name, a.type, a.component_count, a.normalized, {}});
+    const std::size_t bytes = a.element_bytes();
+    for (const Index wedge : source) {
+      const auto begin = a.data.begin() + static_cast<std::ptrdiff_t>(wedge * bytes);
+      copy.data.insert(copy.data.end(), begin, begin + static_cast<std::ptrdiff_t>(bytes));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Mesh optimise_placement(const Mesh& original, const Mesh& level, const PlacementOptions& options) {
+  Mesh fitted = compacted(level);
+  if (fitted.face_count() == 0 || original.face_count() == 0) return fitted;
+  const Mesh before = fitted;
+  Fitting(original, fitted, options).run();
+  look_up_attributes(original, before, fitted);
+  return fitted;
+}
+
+}  // namespace lodestone

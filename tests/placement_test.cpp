@@ -1,0 +1,114 @@
+#include <lodestone/lod/placement.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <lodestone/lod/attribute_deviation.h>
+#include <lodestone/lod/cursor.h>
+#include <lodestone/lod/deviation.h>
+#include <lodestone/lod/simplify.h>
+
+#include "support/mesh_properties.h"
+
+namespace lodestone::test {
+namespace {
+
+Mesh level_of(const Mesh& mesh, double ratio) {
+  SimplifyOptions options;
+  options.measure_step = 0;
+  const auto result = simplify(mesh, options);
+  REQUIRE(result);
+  Cursor cursor(result->mesh);
+  cursor.seek(position_for_faces(result->mesh, static_cast<std::uint64_t>(ratio * static_cast<double>(mesh.face_count()))));
+  return extract_level(result->mesh, cursor);
+}
+
+double rms(const Mesh& a, const Mesh& b) {
+  const Deviation deviation = measure_deviation(a, b);
+  return deviation.forward.rms + deviation.backward.rms;
+}
+
+Vec3 normal_of(const Mesh& mesh, Index f) {
+  const Vec3 a = mesh.corner_position(3 * f);
+  return cross(mesh.corner_position(3 * f + 1) - a, mesh.corner_position(3 * f + 2) - a);
+}
+
+}  // namespace
+
+TEST_CASE("fitted levels are nearer to the original, by far on smooth surfaces") {
+  for (const TriangleSoup& soup : {icosphere(4, 0, 0), torus(48, 32), terrain(40, 3)}) {
+    const Mesh mesh = mesh_of(soup);
+    const Mesh level = level_of(mesh, 0.08);
+    const Mesh fitted = optimise_placement(mesh, level);
+    CHECK(fitted.face_count() == level.face_count());
+    CHECK(rms(mesh, fitted) < 0.75 * rms(mesh, level));
+  }
+}
+
+TEST_CASE("fitting keeps the topology of every family, opens no crack and turns no face or texture over") {
+  for (const NamedShape& shape : all_shapes()) {
+    for (const double ratio : {0.6, 0.25}) {
+      INFO(shape.name << " at " << ratio);
+      const Mesh mesh = mesh_of(shape.soup);
+      if (mesh.face_count() == 0) continue;
+      const Mesh level = level_of(mesh, ratio);
+      const Mesh fitted = optimise_placement(mesh, level);
+      REQUIRE(fitted.face_count() == level.face_count());
+      const auto before = assemble(to_soup(level));
+      const auto after = assemble(to_soup(fitted));
+      REQUIRE(before);
+      REQUIRE(after);
+      CHECK(after->report.nonmanifold_edges == before->report.nonmanifold_edges);
+      CHECK(after->report.degenerate_faces + after->report.duplicate_faces == 0);
+      CHECK(open_places(fitted).size() == open_places(level).size());
+      const double scale = bounding_box(mesh).diagonal();
+      for (Index f = 0; f < fitted.face_count(); ++f) CHECK(length(normal_of(fitted, f)) > 1e-12 * scale * scale);
+      if (shape.name.starts_with("seam") || shape.name.starts_with("slit"))
+        for (Index f = 0; f < fitted.face_count(); ++f) CHECK(texture_area(fitted, f) >= 0);
+    }
+  }
+}
+
+TEST_CASE("borders and corners stay: a flat square is still the same square") {
+  const Mesh mesh = mesh_of(grid(12, 0, 1));
+  const Mesh fitted = optimise_placement(mesh, level_of(mesh, 0.1));
+  CHECK(surface_area(fitted) == Approx(1).epsilon(1e-5));
+  CHECK(rms(mesh, fitted) < 1e-6);
+}
+
+TEST_CASE("attributes follow where vertices go, each on its side of the seam") {
+  const Mesh mesh = mesh_of(seam_sphere(32, 20));
+  const Mesh level = level_of(mesh, 0.15);
+  const Mesh fitted = optimise_placement(mesh, level);
+  const auto mean = [&](const Mesh& m, const char* name) {
+    const auto all = measure_attributes(mesh, m);
+    return std::find_if(all.begin(), all.end(), [&](const auto& a) { return a.name == name; })->mean;
+  };
+  // Normals on a sphere are its positions: the looked-up ones stay near them.
+  CHECK(mean(fitted, "NORMAL") < 1.2 * mean(level, "NORMAL") + 0.01);
+  CHECK(mean(fitted, "TEXCOORD_0") < 1.2 * mean(level, "TEXCOORD_0") + 0.005);
+  // No wedge has a texture coordinate from the other side: faces stay small in the texture.
+  for (Index f = 0; f < fitted.face_count(); ++f) CHECK(texture_area(fitted, f) < 0.1);
+}
+
+TEST_CASE("joints and weights stay those of the vertex") {
+  const Mesh mesh = mesh_of(skinned_cylinder(24, 16));
+  const Mesh fitted = optimise_placement(mesh, level_of(mesh, 0.3));
+  for (Index w = 0; w < fitted.wedge_count(); ++w) {
+    bool known = false;
+    for (Index o = 0; o < mesh.wedge_count() && !known; ++o)
+      known = std::memcmp(&fitted.attributes[1].data[16 * w], &mesh.attributes[1].data[16 * o], 16) == 0;
+    CHECK(known);
+  }
+}
+
+TEST_CASE("the same level is fitted to the same bytes") {
+  const Mesh mesh = mesh_of(icosphere(4, 0.02, 3));
+  const Mesh level = level_of(mesh, 0.1);
+  const Mesh a = optimise_placement(mesh, level);
+  const Mesh b = optimise_placement(mesh, level);
+  CHECK(a.positions == b.positions);
+  CHECK(a.corner_wedge == b.corner_wedge);
+}
+
+}  // namespace lodestone::test
