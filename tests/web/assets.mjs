@@ -12,7 +12,8 @@ import { makeTube } from './made.mjs';
 import { Log, readOptions, repository } from './suite.mjs';
 
 const demoModel = join(repository, 'demo', 'suzi.glb');
-const meshes = ['paper/stanford-bunny.obj', 'paper/fandisk.obj', 'mesh/spot/spot_triangulated.obj'];
+const large = ['paper/stanford-bunny.obj', 'paper/fandisk.obj'];
+const textured = 'mesh/spot/spot_triangulated.obj';
 const noDraco = '--no-draco';
 
 function variants(input, kind, output, flagSets) {
@@ -33,9 +34,10 @@ const madeModel = (output) => join(output, 'made', 'tube.glb');
 
 /** Returns all assets: what goes in, what comes out, how; `kind` is `mesh` for one bare mesh, else `scene`. */
 export function planAssets({ models, output }) {
-  const bare = [demoModel, ...meshes.map((name) => join(models, name)).filter(existsSync)];
+  const found = (names) => names.map((name) => join(models, name)).filter(existsSync);
   return [
-    ...bare.flatMap((input) => variants(input, 'mesh', output, [[], [noDraco]])),
+    ...[demoModel, ...found([textured])].flatMap((input) => variants(input, 'mesh', output, [[], [noDraco]])),
+    ...found(large).flatMap((input) => variants(input, 'mesh', output, [[]])),
     ...[madeModel(output), ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], [noDraco]])),
   ];
 }

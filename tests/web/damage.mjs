@@ -16,7 +16,8 @@ function coarserMeshes(gltf) {
   for (const [, ...coarser] of lodChains(gltf)) {
     coarser.forEach((node, i) => {
       const { mesh, extras } = gltf.nodes[node];
-      if (mesh !== undefined) found.set(mesh, { mesh: gltf.meshes[mesh], level: i + 1, scale: extras.lodestone.world_scale });
+      if (mesh === undefined) return;
+      found.set(mesh, { mesh: gltf.meshes[mesh], level: i + 1, scale: extras.lodestone.world_scale });
     });
   }
   return [...found.values()];

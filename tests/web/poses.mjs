@@ -10,11 +10,11 @@ import { promisify } from 'node:util';
 import { planAssets } from './assets.mjs';
 import { Log, openSite, readOptions, requireClients, skip } from './suite.mjs';
 
-// What moves in each, and so is worth posing; `targets` is how many morph targets to turn on, one at a time. Weights and
-// targets do not count in the cost yet, and the tube is straight where it bends: its levels may lie `slack` farther off,
-// which joints or targets at the wrong vertices exceed.
+// What moves in each, and so is worth posing; `targets` is how many morph targets to turn on, one at a time. The tube is
+// straight at rest where it bends, and so its levels' ratios are large: they may lie `slack` farther off, which joints or
+// targets at the wrong vertices exceed, and so does a pose of another time (`proves`).
 const subjects = [
-  { name: 'tube', animations: ['Bend', 'Swell'], targets: 1, slack: 0.02 },
+  { name: 'tube', animations: ['Bend', 'Swell'], targets: 1, slack: 0.02, proves: true },
   { name: 'RobotExpressive', animations: ['Running', 'Dance'], targets: 3 },
   { name: 'Knight', animations: ['Running_A', '1H_Melee_Attack_Chop'], targets: 0 },
   { name: 'MorphStressTest', animations: ['TheWave', 'Pulse'], targets: 4 },
@@ -43,13 +43,14 @@ function judge(rest, poses, slack) {
   const line = ['mean', 'max'].map((kind) => {
     const ratios = poses.map((pose) => (rest[kind] > 0 ? (pose[kind] / rest[kind]).toFixed(2) : '-'));
     const largest = Math.max(...poses.map((pose) => pose[kind]));
-    return `${kind} ${percent(rest[kind] / rest.diagonal)} × ${ratios.join(' ')}, at most ${percent(largest / rest.diagonal)}`;
+    const share = (distance) => percent(distance / rest.diagonal);
+    return `${kind} ${share(rest[kind])} × ${ratios.join(' ')}, at most ${share(largest)}`;
   }).join('; ');
   for (const kind of ['mean', 'max']) assert.ok(poses.every((pose) => pose[kind] <= allowed(kind)), line);
   return line;
 }
 
-async function checkSubject(log, studio, { name, animations, targets, slack = usualSlack }, asset) {
+async function checkSubject(log, studio, { name, animations, targets, slack = usualSlack, proves }, asset) {
   const { page, program, output } = studio;
   const found = await page.ask(([url, draco]) => window.openAsset(url, draco), [studio.url(asset.path), asset.draco]);
   const pose = (...choice) => page.ask((one) => window.poseLevel(...one), choice);
@@ -73,12 +74,15 @@ async function checkSubject(log, studio, { name, animations, targets, slack = us
       return judge(rest, poses, slack);
     }]);
   }
-  checks.push(['another pose is seen', async () => {
-    const [one, , other] = timesOf(animations[0]);
-    const apart = await measure(program, output, await pose(0, animations[0], one), await pose(level, animations[0], other));
-    assert.throws(() => judge(rest, [apart], slack), undefined, percent(apart.max / rest.diagonal));
-    return percent(apart.max / rest.diagonal);
-  }]);
+  if (proves) {
+    checks.push(['another pose is seen', async () => {
+      const [one, , other] = timesOf(animations[0]);
+      const posed = [await pose(0, animations[0], one), await pose(level, animations[0], other)];
+      const apart = await measure(program, output, ...posed);
+      assert.throws(() => judge(rest, [apart], slack), undefined, percent(apart.max / rest.diagonal));
+      return percent(apart.max / rest.diagonal);
+    }]);
+  }
   await log.run(`${name} level ${level}`, Object.fromEntries(checks));
 }
 

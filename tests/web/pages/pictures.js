@@ -156,7 +156,7 @@ window.compareLevel = (level, pixel, label) => {
     const near = [drawOriginal(nearest()), distance === nearest() ? pair[1] : draw(asset, nearest())];
     sheet.push({
       label: `${label}, ${width.toFixed(0)} pixels, similarity ${value.toFixed(4)}`,
-      pictures: [...near.map((picture) => magnified(picture, nearest())), ...pair.map((picture) => magnified(picture, distance))],
+      pictures: [...near.map((one) => magnified(one, nearest())), ...pair.map((one) => magnified(one, distance))],
     });
   }
   return { value, width };
