@@ -83,6 +83,12 @@ void BuildCommand::add_metric_options(CLI::App& app) {
 
 void BuildCommand::add_format_options(CLI::App& app) {
   const char* group = "File";
+  app.add_option("--placement", placement,
+                 "Where a level's vertices lie: fitted to the original (default; skinned and morphed meshes are left out), "
+                 "or a subset of its vertices, as in the stream")
+      ->check(CLI::IsMember({"optimised", "subset"}))
+      ->type_name("NAME")
+      ->group(group);
   app.add_option("--profile", profile, "One file, levels by MSFT_lod (default), or a file for each level and an index")
       ->check(CLI::IsMember({"msft-lod", "files"}))
       ->type_name("NAME")

@@ -33,6 +33,7 @@ struct BuildCommand {
   std::vector<std::string> weights;    ///< "NAME=FACTOR"
   std::string importance;              ///< an attribute's name
   std::optional<std::filesystem::path> settings;
+  std::string placement = "optimised";
   std::string profile = "msft-lod";
   bool no_stream = false;
   bool no_draco = false;

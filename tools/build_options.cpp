@@ -96,6 +96,7 @@ Json settings_json(const BuildCommand& options, std::size_t level_count) {
                {"reference", options.reference},
                {"levels", level_count},
                {"per_mesh", options.per_mesh},
+               {"placement", options.placement},
                {"profile", options.profile},
                {"lock_border", options.lock_border},
                {"vanish", options.vanish},

@@ -9,6 +9,7 @@
 #include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/deviation.h>
+#include <lodestone/lod/placement.h>
 #include <lodestone/lod/simplify.h>
 
 #include "build_options.h"
@@ -16,6 +17,7 @@
 #include "build_report.h"
 #include "build_settings.h"
 #include "messages.h"
+#include "parallel.h"
 #include "progress_bar.h"
 #include "scene_target.h"
 #include "scene_totals.h"
@@ -82,6 +84,15 @@ DeviationOptions level_measure() {
   return options;
 }
 
+/// One level of one mesh, in the making.
+struct LevelJob {
+  std::size_t mesh = 0;
+  std::size_t level = 0;
+  bool repeats = false;  ///< it is the level before
+  AssetLevel made;
+  std::vector<AttributeDeviation> attributes;
+};
+
 /// One run of the command: its steps in order, and what they hand on to each other.
 class BuildRun {
  public:
@@ -100,9 +111,11 @@ class BuildRun {
   StopCriteria stop_criteria(const SceneMesh& mesh) const;
   void report_simplified(const SceneMesh& mesh, const SimplifyResult& result);
   std::vector<double> world_charges(const SimplifyResult& result, double scale) const;
+  std::vector<SceneChoice> choose_levels() const;
   void make_levels();
-  void add_level(const SceneChoice& choice, bool whole);
-  void add_mesh_level(std::size_t mesh, Index position, const SceneChoice& choice);
+  void make_mesh_level(LevelJob& job, Index position, const LevelTarget& target) const;
+  void take_mesh_level(LevelJob&& job, const SceneChoice& choice);
+  void report_level(std::size_t number, const SceneChoice& choice);
   bool report_missed_targets() const;
   Result<void> encode_streams();
   Result<std::vector<EncodedAsset>> encode() const;
@@ -116,9 +129,7 @@ class BuildRun {
   SimplifyOptions common_options_;
   BuildSettings settings_;
   std::optional<Scene> scene_;
-  std::vector<SimplifyResult> simplified_;  // by mesh, as the next three
-  std::vector<Cursor> cursors_;
-  std::vector<Index> last_positions_;
+  std::vector<SimplifyResult> simplified_;  // by mesh, as the next
   std::vector<LeveledMesh> levels_;
   BuildReport report_;
 };
@@ -195,27 +206,31 @@ Result<SimplifyOptions> BuildRun::options_for(const SceneMesh& mesh) const {
 
 Result<void> BuildRun::simplify_meshes() {
   progress_.start("simplifying");
-  std::size_t total = 0, done = 0;
-  for (const SceneMesh& mesh : scene_->meshes()) total += mesh.mesh.face_count();
-  for (const SceneMesh& mesh : scene_->meshes()) {
-    Result<SimplifyOptions> options = options_for(mesh);
-    if (!options) return tl::unexpected(options.error());
-    const auto faces = static_cast<double>(mesh.mesh.face_count());
-    options->progress = [&](double share) {
-      progress_.update((static_cast<double>(done) + share * faces) / static_cast<double>(total));
+  const std::vector<SceneMesh>& meshes = scene_->meshes();
+  std::vector<Result<SimplifyResult>> results(meshes.size());
+  SharedProgress shared(progress_);
+  for (const SceneMesh& mesh : meshes) shared.add_part(static_cast<double>(mesh.mesh.face_count()));
+  for_each_in_parallel(meshes.size(), [&](std::size_t i) {
+    Result<SimplifyOptions> options = options_for(meshes[i]);
+    if (!options) {
+      results[i] = tl::unexpected(options.error());
+      return;
+    }
+    options->progress = [&, i](double share) {
+      shared.update(i, share);
       return true;
     };
-    Result<SimplifyResult> result = simplify(mesh.mesh, *options);
-    if (!result) {
-      progress_.clear();
-      return fail(result.error().code,
-                  "mesh " + tool::quoted(std::string_view(mesh.name)) + ": " + result.error().message);
-    }
-    report_simplified(mesh, *result);
-    simplified_.push_back(std::move(*result));
-    done += mesh.mesh.face_count();
-  }
+    results[i] = simplify(meshes[i].mesh, *options);
+  });
   progress_.clear();
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    Result<SimplifyResult>& result = results[i];
+    if (!result)
+      return fail(result.error().code,
+                  "mesh " + tool::quoted(std::string_view(meshes[i].name)) + ": " + result.error().message);
+    report_simplified(meshes[i], *result);
+    simplified_.push_back(std::move(*result));
+  }
   report_.timings_ms.simplify = stopwatch_.lap_ms();
   return {};
 }
@@ -244,35 +259,50 @@ std::vector<double> BuildRun::world_charges(const SimplifyResult& result, double
 }
 
 void BuildRun::make_levels() {
-  progress_.start("measuring levels");
+  progress_.start("making levels");
+  const std::vector<SceneChoice> choices = choose_levels();
+  levels_.resize(simplified_.size());
+  std::vector<LevelJob> jobs;
+  for (std::size_t mesh = 0; mesh < simplified_.size(); ++mesh)
+    for (std::size_t level = 0; level < choices.size(); ++level)
+      jobs.push_back({mesh, level, level > 0 && choices[level].positions[mesh] == choices[level - 1].positions[mesh], {}, {}});
+  SharedProgress shared(progress_);
+  for (std::size_t i = 0; i < jobs.size(); ++i) shared.add_part(1);
+  for_each_in_parallel(jobs.size(), [&](std::size_t i) {
+    LevelJob& job = jobs[i];
+    if (!job.repeats) make_mesh_level(job, choices[job.level].positions[job.mesh], choices[job.level].target);
+    shared.update(i, 1);
+  });
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    if (jobs[i].repeats) jobs[i].made = jobs[i - 1].made, jobs[i].attributes = jobs[i - 1].attributes;
+  for (LevelJob& job : jobs) take_mesh_level(std::move(job), choices[job.level]);
+  for (std::size_t level = 0; level < choices.size(); ++level) report_level(level, choices[level]);
+  report_.timings_ms.levels = stopwatch_.lap_ms();
+}
+
+/// Finds each mesh's positions: the whole scene, then what answers the targets.
+std::vector<SceneChoice> BuildRun::choose_levels() const {
   std::vector<ScenePart> parts;
-  SceneChoice whole{{}, {}, true, "whole"};
+  std::vector<SceneChoice> choices{{{}, {}, true, "whole"}};
   for (std::size_t i = 0; i < simplified_.size(); ++i) {
     const SceneMesh& mesh = scene_->meshes()[i];
     const ProgressiveMesh& progressive = simplified_[i].mesh;
     parts.push_back({&progressive, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
                      settings_.importance_of(mesh), world_charges(simplified_[i], mesh.scale)});
-    whole.positions.push_back(static_cast<Index>(progressive.record_count()));
-    cursors_.emplace_back(progressive);
+    choices[0].positions.push_back(static_cast<Index>(progressive.record_count()));
   }
-  levels_.resize(parts.size());
-  last_positions_ = whole.positions;
-  add_level(whole, true);
-  for (const LevelTarget& target : targets_) {
-    progress_.update(static_cast<double>(report_.levels.size() - 1) / static_cast<double>(targets_.size()));
-    add_level(choose_positions(parts, target, scope(), scene_->box().diagonal()), false);
-  }
-  report_.timings_ms.levels = stopwatch_.lap_ms();
+  for (const LevelTarget& target : targets_)
+    choices.push_back(choose_positions(parts, target, scope(), scene_->box().diagonal()));
+  return choices;
 }
 
-void BuildRun::add_level(const SceneChoice& choice, bool whole) {
+void BuildRun::report_level(std::size_t number, const SceneChoice& choice) {
   BuildReport::Level entry;
   DeviationTotal deviation;
   for (std::size_t i = 0; i < simplified_.size(); ++i) {
-    add_mesh_level(i, choice.positions[i], choice);
     const SceneMesh& mesh = scene_->meshes()[i];
-    const AssetLevel& level = levels_[i].levels.back();
-    const BuildReport::MeshPart::Level& part = report_.meshes[i].levels.back();
+    const AssetLevel& level = levels_[i].levels[number];
+    const BuildReport::MeshPart::Level& part = report_.meshes[i].levels[number];
     entry.face_count += part.face_count * mesh.instance_count;
     entry.vertex_count += part.vertex_count * mesh.instance_count;
     entry.deviation_bound = std::max(entry.deviation_bound, part.deviation_bound * mesh.scale);
@@ -280,30 +310,42 @@ void BuildRun::add_level(const SceneChoice& choice, bool whole) {
     deviation.add(level.deviation, mesh.scale, mesh.area);
   }
   entry.deviation = deviation.result();
-  if (!whole) entry.target = choice.target;
+  if (number > 0) entry.target = choice.target;
   entry.met = choice.met;
   entry.stopped_by = choice.stopped_by;
   report_.levels.push_back(std::move(entry));
 }
 
-void BuildRun::add_mesh_level(std::size_t mesh, Index position, const SceneChoice& choice) {
-  const ProgressiveMesh& progressive = simplified_[mesh].mesh;
-  std::vector<AssetLevel>& levels = levels_[mesh].levels;
-  AssetLevel level;
-  cursors_[mesh].seek(position);
-  level.mesh = extract_level(progressive, cursors_[mesh]);
-  if (!levels.empty() && position == last_positions_[mesh])
-    level.deviation = levels.back().deviation;
-  else if (position < progressive.record_count())
-    level.deviation = measure_deviation(scene_->meshes()[mesh].mesh, level.mesh, level_measure());
-  std::vector<AttributeDeviation> attributes;
-  if (position < progressive.record_count()) attributes = measure_attributes(scene_->meshes()[mesh].mesh, level.mesh);
+void BuildRun::take_mesh_level(LevelJob&& job, const SceneChoice& choice) {
+  job.made.stop_reason = choice.stopped_by;
+  const float bound = simplified_[job.mesh].mesh.deviation[choice.positions[job.mesh]];
+  report_.meshes[job.mesh].levels.push_back({job.made.mesh.face_count(), job.made.mesh.vertex_count(),
+                                             job.made.deviation, bound, std::move(job.attributes)});
+  levels_[job.mesh].levels.push_back(std::move(job.made));
+}
+
+/// Extracts a level and fits it to the original, unless an error was asked for that only the stream's level keeps to.
+void BuildRun::make_mesh_level(LevelJob& job, Index position, const LevelTarget& target) const {
+  const SceneMesh& source = scene_->meshes()[job.mesh];
+  const ProgressiveMesh& progressive = simplified_[job.mesh].mesh;
+  AssetLevel& level = job.made;
   level.curvature_error = progressive.curvature_error[position];
-  level.stop_reason = choice.stopped_by;
-  last_positions_[mesh] = position;
-  report_.meshes[mesh].levels.push_back({level.mesh.face_count(), level.mesh.vertex_count(), level.deviation,
-                                         progressive.deviation[position], std::move(attributes)});
-  levels.push_back(std::move(level));
+  Cursor cursor(progressive);
+  cursor.seek(position);
+  level.mesh = extract_level(progressive, cursor);
+  if (position == progressive.record_count()) return;
+  const auto measured = [&](const Mesh& m) { return measure_deviation(source.mesh, m, level_measure()); };
+  const Mesh subset = level.mesh;
+  // Vertices of skinned and morphed meshes take their weights and targets with them, so those stay where they are.
+  const bool fits = options_.placement == "optimised" && !source.skinned && !source.has_targets;
+  if (fits) level.mesh = optimise_placement(source.mesh, subset);
+  level.deviation = measured(level.mesh);
+  const double bound = static_cast<double>(progressive.deviation[position]);
+  if (fits && target.kind == TargetKind::Error && level.deviation.maximum_bound() > bound) {
+    level.mesh = subset;
+    level.deviation = measured(subset);
+  }
+  job.attributes = measure_attributes(source.mesh, level.mesh);
 }
 
 /// Says which levels have more faces than asked for, and why; returns whether there are any.

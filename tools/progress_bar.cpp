@@ -51,4 +51,18 @@ void ProgressBar::draw(double share) {
   last_draw_ = std::chrono::steady_clock::now();
 }
 
+void SharedProgress::add_part(double weight) {
+  weight_.push_back(weight);
+  share_.push_back(0);
+  total_ += weight;
+}
+
+void SharedProgress::update(std::size_t part, double share) {
+  const std::scoped_lock lock(mutex_);
+  share_[part] = share;
+  double done = 0;
+  for (std::size_t i = 0; i < share_.size(); ++i) done += weight_[i] * share_[i];
+  bar_.update(total_ > 0 ? done / total_ : 1);
+}
+
 }  // namespace lodestone::tool

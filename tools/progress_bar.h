@@ -1,7 +1,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <mutex>
 #include <string>
+#include <vector>
 
 namespace lodestone::tool {
 
@@ -28,6 +31,23 @@ class ProgressBar {
   bool drawn_ = false;
   std::string stage_;
   std::chrono::steady_clock::time_point last_draw_;
+};
+
+/// Adds up the progress of parts of a stage that threads work on; any thread may report.
+class SharedProgress {
+ public:
+  explicit SharedProgress(ProgressBar& bar) : bar_(bar) {}
+
+  /// Announces the next part and its weight; before the work starts.
+  void add_part(double weight);
+  /// Says how much of a part is done, 0 to 1.
+  void update(std::size_t part, double share);
+
+ private:
+  ProgressBar& bar_;
+  std::mutex mutex_;
+  std::vector<double> weight_, share_;
+  double total_ = 0;
 };
 
 }  // namespace lodestone::tool

@@ -29,6 +29,7 @@ constexpr double kStay = 0.02;        // how much a vertex wants to stay, of the
 constexpr double kCornerStay = 1e6;   // the same where lines end or meet
 constexpr double kAlong = 0.05;       // what distance along the surface or line counts, of distance from it
 constexpr double kLineWeight = 2;     // of lines against surfaces, at equal length
+constexpr double kSettled = 0.985;    // of the sum of squares before: less gain is not worth another iteration
 constexpr int kTurningIterations = 3; // edges are turned in the first ones, and the vertices follow
 
 class Fitting {
@@ -162,8 +163,10 @@ void Fitting::run() {
     move();
     const double error = assign();
     if (!(error < best)) break;
+    const bool settled = error > kSettled * best;
     best = error;
     best_level = level_;
+    if (settled && i + 1 >= kTurningIterations) break;
   }
   level_ = std::move(best_level);
 }
