@@ -15,6 +15,8 @@ const ARGUMENTS = [
   '--no-first-run',
 ];
 
+const patience = 120_000; // milliseconds; a busy machine draws slowly in software
+
 function isExecutable(path) {
   try {
     accessSync(path, constants.X_OK);
@@ -36,17 +38,47 @@ export async function launchBrowser(executablePath) {
   return chromium.launch({ executablePath, args: [...ARGUMENTS, ...(asRoot ? ['--no-sandbox'] : [])] });
 }
 
-/** Opens a page, hands it to `job`, and fails on any error the page reports. */
-export async function withPage(browser, url, job) {
+/** A viewer that waits for what never comes would wait for ever. */
+function withinTime(answer) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`no answer after ${patience / 1000} s`)), patience);
+  });
+  return Promise.race([answer, late]).finally(() => clearTimeout(timer));
+}
+
+/** Opens a page. Its `ask` evaluates in it and fails on any error that the page has reported since the last time. */
+export async function openPage(browser, url) {
   const page = await browser.newPage({ viewport: { width: 640, height: 640 } });
-  page.setDefaultTimeout(120_000); // a busy machine draws slowly in software
+  page.setDefaultTimeout(patience);
   const problems = [];
   page.on('pageerror', (error) => problems.push(error.message));
   page.on('console', (message) => message.type() === 'error' && problems.push(message.text()));
+  const failOnProblems = () => {
+    const all = problems.splice(0).join('; ');
+    if (all !== '') throw new Error(`the page reports: ${all}`);
+  };
+  await page.goto(url);
+  await page.waitForFunction('window.ready');
+  return {
+    page,
+    failOnProblems,
+    ask: async (job, argument) => {
+      const answer = await withinTime(page.evaluate(job, argument)).catch((error) => {
+        problems.push(error.message.split('\n')[0]);
+      });
+      failOnProblems();
+      return answer;
+    },
+  };
+}
+
+/** Opens a page, hands it to `job`, and fails on any error the page reports. */
+export async function withPage(browser, url, job) {
+  const { page, failOnProblems } = await openPage(browser, url);
   try {
-    await page.goto(url);
     const result = await job(page);
-    if (problems.length > 0) throw new Error(`the page reports: ${problems.join('; ')}`);
+    failOnProblems();
     return result;
   } finally {
     await page.close();

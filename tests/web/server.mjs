@@ -10,6 +10,8 @@ const TYPES = {
   '.mjs': 'text/javascript',
   '.wasm': 'application/wasm',
   '.glb': 'model/gltf-binary',
+  '.gltf': 'model/gltf+json',
+  '.png': 'image/png',
 };
 
 /** Returns the file a URL names, or undefined; `mounts` maps the first part of the path to a folder. */

@@ -17,25 +17,49 @@ function countTriangles(scene) {
   return meshes.reduce((sum, mesh) => sum + mesh.getTotalIndices() / 3, 0);
 }
 
-/** Loads a file, optionally by byte ranges; returns the triangles that the scene shows after each level, in that order. */
-window.loadProgressively = async (url, useRangeRequests) => {
+/** Loads a file; `prepare` gets the loader before it begins, `job` the scene when all is there. */
+async function withScene(url, prepare, job) {
   const scene = new BABYLON.Scene(engine);
-  const shown = [];
   let complete;
   BABYLON.SceneLoader.OnPluginActivatedObservable.addOnce((loader) => {
-    loader.useRangeRequests = useRangeRequests;
     complete = new Promise((resolve) => loader.onCompleteObservable.addOnce(resolve));
+    prepare(loader, scene);
+  });
+  try {
+    await BABYLON.SceneLoader.AppendAsync('', url, scene);
+    await complete;
+    return job(scene);
+  } finally {
+    scene.dispose();
+  }
+}
+
+/** Loads a file, optionally by byte ranges; returns the triangles that the scene shows after each level, in that order. */
+window.loadProgressively = async (url, useRangeRequests) => {
+  const shown = [];
+  const prepare = (loader, scene) => {
+    loader.useRangeRequests = useRangeRequests;
     loader.onExtensionLoadedObservable.add((extension) => {
       if (extension.name === 'MSFT_lod') {
         extension.onNodeLODsLoadedObservable.add(() => shown.push(countTriangles(scene)));
       }
     });
-  });
-  await BABYLON.SceneLoader.AppendAsync('', url, scene);
-  await complete;
-  const last = countTriangles(scene);
-  scene.dispose();
+  };
+  const last = await withScene(url, prepare, countTriangles);
   return { shown, last };
+};
+
+/** Loads a file once for each level and stops there; returns the triangles that it then shows, coarsest first. */
+window.loadEachLevel = async (url, levels) => {
+  const counts = [];
+  for (let level = 1; level <= levels; ++level) {
+    const prepare = (loader) => {
+      loader.extensionOptions = { MSFT_lod: { maxLODsToLoad: level } };
+      loader.skipMaterials = level < levels;
+    };
+    counts.push(await withScene(url, prepare, countTriangles));
+  }
+  return counts;
 };
 
 window.ready = true;

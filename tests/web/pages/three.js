@@ -1,21 +1,10 @@
 // Loads each level of a file with three.js. Its GLTFLoader knows nothing of MSFT_lod: the page asks for the nodes.
 import * as THREE from 'three';
-import { DRACOLoader } from 'three/addons/loaders/DRACOLoader.js';
-import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { makeLoader } from './scene.js';
 
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 renderer.setSize(640, 640);
 document.body.append(renderer.domElement);
-
-function makeLoader(withDraco) {
-  const loader = new GLTFLoader();
-  if (withDraco) {
-    const draco = new DRACOLoader();
-    draco.setDecoderPath('/node_modules/three/examples/jsm/libs/draco/gltf/');
-    loader.setDRACOLoader(draco);
-  }
-  return loader;
-}
 
 function countTriangles(object) {
   let count = 0;

@@ -1,0 +1,67 @@
+// Builds every asset that the other programs open; several at a time, since each build has one thread.
+//
+//   node assets.mjs --program PROGRAM [--models FOLDER] --output FOLDER
+import { execFile } from 'node:child_process';
+import { existsSync, readdirSync } from 'node:fs';
+import { mkdir, writeFile } from 'node:fs/promises';
+import { availableParallelism } from 'node:os';
+import { basename, dirname, extname, join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { promisify } from 'node:util';
+import { makeTube } from './made.mjs';
+import { Log, readOptions, repository } from './suite.mjs';
+
+const demoModel = join(repository, 'demo', 'suzi.glb');
+const large = ['paper/stanford-bunny.obj', 'paper/fandisk.obj'];
+const textured = 'mesh/spot/spot_triangulated.obj';
+const noDraco = '--no-draco';
+
+function variants(input, kind, output, flagSets) {
+  const stem = basename(input, extname(input));
+  return flagSets.map((flags) => {
+    const name = [stem, ...flags].join('');
+    return { name, stem, kind, input, flags, draco: !flags.includes(noDraco), path: join(output, `${name}.glb`) };
+  });
+}
+
+function sceneModels(models) {
+  return ['gltf', 'skin-morph'].map((name) => join(models, name)).filter(existsSync).flatMap((folder) =>
+    readdirSync(folder, { recursive: true }).filter((name) => ['.gltf', '.glb'].includes(extname(name))).sort()
+      .map((name) => join(folder, name)));
+}
+
+const madeModel = (output) => join(output, 'made', 'tube.glb');
+
+/** Returns all assets: what goes in, what comes out, how; `kind` is `mesh` for one bare mesh, else `scene`. */
+export function planAssets({ models, output }) {
+  const found = (names) => names.map((name) => join(models, name)).filter(existsSync);
+  return [
+    ...[demoModel, ...found([textured])].flatMap((input) => variants(input, 'mesh', output, [[], [noDraco]])),
+    ...found(large).flatMap((input) => variants(input, 'mesh', output, [[]])),
+    ...[madeModel(output), ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], [noDraco]])),
+  ];
+}
+
+async function build(program, { input, path, flags }) {
+  const { stderr } = await promisify(execFile)(program,
+    ['build', input, '-o', path, '--quiet', '--levels', '5', '--ratio', '0.5', ...flags]);
+  return stderr.includes('warning') ? 'with warnings' : 'done';
+}
+
+async function main() {
+  const options = readOptions();
+  await mkdir(dirname(madeModel(options.output)), { recursive: true });
+  await writeFile(madeModel(options.output), makeTube());
+  const waiting = planAssets(options);
+  const log = new Log();
+  const work = async () => {
+    for (let asset = waiting.shift(); asset; asset = waiting.shift()) {
+      const one = asset;
+      await log.run(one.name, { build: () => build(options.program, one) });
+    }
+  };
+  await Promise.all(Array.from({ length: availableParallelism() }, work));
+  log.close();
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) await main();

@@ -1,0 +1,91 @@
+// What every program here does: its options, a site for the clients, and a log of checks.
+import { existsSync } from 'node:fs';
+import { mkdir } from 'node:fs/promises';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+import { serve } from './server.mjs';
+
+const here = dirname(fileURLToPath(import.meta.url));
+export const repository = join(here, '..', '..');
+
+/** Reads the command line: the program, the folder of models, the folder for everything that is made, and files. */
+export function readOptions() {
+  const { values, positionals } = parseArgs({
+    allowPositionals: true,
+    options: {
+      program: { type: 'string' },
+      models: { type: 'string', default: join(repository, '..', 'shared', 'data') },
+      output: { type: 'string', default: 'build/web' },
+    },
+  });
+  return { ...values, models: resolve(values.models), output: resolve(values.output), files: positionals };
+}
+
+/** Ends a run that cannot happen on this machine: a failure where the project's own tests run, a remark elsewhere. */
+export function stopWithout(what) {
+  console.log(process.env.CI ? `FAILED: ${what}` : `SKIPPED: ${what}`);
+  process.exit(process.env.CI ? 1 : 0);
+}
+
+/** Says what a run leaves out because a model is not on this machine. */
+export function skip(what) {
+  console.log(`SKIPPED ${what}: no such model on this machine`);
+}
+
+export function requireClients() {
+  if (!existsSync(join(here, 'node_modules', 'three'))) stopWithout('no web clients: run npm ci in tests/web');
+}
+
+/** Serves the clients, the pages, `assets` and the models to a browser; `url` gives the address of a file of theirs. */
+export async function openSite({ output, models, assets = output }) {
+  requireClients();
+  const { findBrowser, launchBrowser } = await import('./browser.mjs');
+  const browserPath = findBrowser();
+  if (!browserPath) stopWithout('no Chromium on this machine');
+  await mkdir(output, { recursive: true });
+  const mounts = {
+    node_modules: join(here, 'node_modules'), pages: join(here, 'pages'), assets, models, demo: join(repository, 'demo'),
+  };
+  const server = await serve(mounts);
+  const browser = await launchBrowser(browserPath);
+  return {
+    address: server.address,
+    ranges: server.ranges,
+    browser,
+    output,
+    url: (path) => {
+      const [mount, folder] = Object.entries(mounts).find(([, root]) => path.startsWith(`${root}/`));
+      return `/${mount}${path.slice(folder.length)}`;
+    },
+    close: async () => {
+      await browser.close();
+      await server.close();
+    },
+  };
+}
+
+/** A log that counts how checks end. */
+export class Log {
+  passed = 0;
+  failed = 0;
+
+  /** Runs checks by name, one after the other; each returns a line or throws the reason. */
+  async run(subject, checks) {
+    for (const [name, check] of Object.entries(checks)) {
+      try {
+        console.log(`ok     ${subject}: ${name}: ${await check()}`);
+        ++this.passed;
+      } catch (error) {
+        console.log(`FAILED ${subject}: ${name}: ${error.message}`);
+        ++this.failed;
+      }
+    }
+  }
+
+  /** Prints the sum and sets the exit status. */
+  close() {
+    console.log(`${this.passed} passed, ${this.failed} failed`);
+    process.exitCode = this.failed === 0 ? 0 : 1;
+  }
+}
