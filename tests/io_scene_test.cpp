@@ -294,7 +294,7 @@ TEST_CASE("primitives that touch are one mesh, and come apart again with their o
   }
 }
 
-TEST_CASE("instances share level meshes, and the largest scale counts") {
+TEST_CASE("instances share their levels' data, and the largest scale counts") {
   GltfMaker maker = strips(1, 4);
   maker.add("nodes", {{"name", "big"}, {"mesh", 0}, {"scale", {1, 3, 2}}, {"extras", {{"tag", 7}}}});
   maker.add("nodes", {{"name", "parent"}, {"translation", {100, 0, 0}}, {"children", {1}}});
@@ -311,27 +311,31 @@ TEST_CASE("instances share level meshes, and the largest scale counts") {
   const EncodedAsset asset = checked(encode_scene(scene, halved(scene), plain()));
   const GltfFile out = GltfFile::from_glb(asset.glb);
   CHECK(asset.layout.levels[0].face_count == 16);
-  CHECK(out.json["meshes"].size() == 2);
+  CHECK(out.json["meshes"].size() == 1 + 2);
   REQUIRE(out.json["nodes"].size() == 3 + 2 * 2);
   CHECK(out.json["nodes"][1]["extras"] == maker.json["nodes"][1]["extras"]);
   CHECK(out.json["nodes"][1]["scale"] == maker.json["nodes"][1]["scale"]);
   CHECK((*lod_node(out, "big_LOD0"))["mesh"] == 0);
-  CHECK((*lod_node(out, "big_LOD1"))["mesh"] == (*lod_node(out, "node_LOD1"))["mesh"]);
+  const auto mesh_at = [&](const char* name) { return out.json["meshes"][(*lod_node(out, name))["mesh"].get<int>()]; };
+  CHECK(mesh_at("big_LOD1")["primitives"] == mesh_at("node_LOD1")["primitives"]);
   const Asset read_back = checked(read_asset_bytes(asset.glb));
   CHECK(read_back.levels[0].mesh.face_count() == 16);
   CHECK(read_back.levels[1].maximum_deviation == test::Approx(0.03));
 }
 
-TEST_CASE("levels that repeat the one before share its mesh") {
+TEST_CASE("levels that repeat the one before share its data, in meshes of their own") {
   GltfMaker maker = strips(1, 4);
   const Scene scene = read(maker);
   for (const bool draco : {false, true}) {
     AssetOptions options;
     options.draco = draco;
     const GltfFile out = encoded(scene, options, 4);
-    CHECK(out.json["meshes"].size() == 2);
-    for (const char* name : {"node_LOD0", "node_LOD1", "node_LOD2"}) CHECK((*lod_node(out, name))["mesh"] == 0);
-    CHECK((*lod_node(out, "node_LOD3"))["mesh"] == 1);
+    CHECK(out.json["meshes"].size() == 4);
+    const auto primitives = [&](const char* name) {
+      return out.json["meshes"][(*lod_node(out, name))["mesh"].get<int>()]["primitives"];
+    };
+    for (const char* name : {"node_LOD1", "node_LOD2"}) CHECK(primitives(name) == primitives("node_LOD0"));
+    CHECK(primitives("node_LOD3") != primitives("node_LOD0"));
   }
 }
 

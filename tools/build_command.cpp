@@ -53,7 +53,7 @@ void BuildCommand::add_control_options(CLI::App& app) {
       ->type_name("DEG")
       ->group(group);
   app.add_option("--weight", weights,
-                 "How much differences of an attribute count: normal=0.25, texcoord=1, color=0.5, skin=1, target=1")
+                 "How much differences of an attribute count: normal=0.25, texcoord=1, color=0.5, skin=3, target=3")
       ->type_name("NAME=FACTOR")
       ->delimiter(',')
       ->group(group);

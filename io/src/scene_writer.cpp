@@ -81,8 +81,7 @@ class SceneWriter {
         options_(options),
         plan_(plan_buffers(impl_)),
         builder_(impl_.document.json(), plan_.free_slots),
-        written_(meshes.size(), std::vector<WrittenLevel>(range.count)),
-        mesh_index_(meshes.size(), std::vector<std::optional<std::size_t>>(range.count)) {}
+        written_(meshes.size(), std::vector<WrittenLevel>(range.count)) {}
 
   Result<EncodedAsset> write() {
     LODESTONE_CHECK(prepare());
@@ -92,7 +91,7 @@ class SceneWriter {
       LODESTONE_CHECK(copy_kept_views(impl_.document, plan_, builder_));
       embed_images(impl_.images, builder_);
     }
-    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_meshes(mesh);
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_finest(mesh);
     if (with_streams_)
       for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_stream(mesh);
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
@@ -150,27 +149,23 @@ class SceneWriter {
     return {};
   }
 
-  /// The finest level takes the mesh's own place; levels that are equal share a mesh.
-  void add_meshes(std::size_t mesh) {
-    const MeshSource& source = impl_.sources[mesh];
-    erase_extension(builder_.at("meshes", source.mesh), kStreamExtension);
-    const Json original = builder_.at("meshes", source.mesh);
-    for (std::size_t level = 0; level < range_.count; ++level) {
-      const WrittenLevel& written = written_[mesh][level];
-      std::optional<std::size_t>& index = mesh_index_[mesh][level];
-      if (level > 0 && repeats_coarser(mesh, level - 1)) {
-        index = mesh_index_[mesh][level - 1];
-      } else if (level == 0) {
-        builder_.at("meshes", source.mesh)["primitives"] =
-            written.primitives.empty() ? placeholder_primitives() : written.primitives;
-        if (!written.primitives.empty()) index = source.mesh;
-      } else if (!written.primitives.empty()) {
-        Json object = original;
-        if (object.contains("name")) object["name"] = text(string_member(object, "name"), "_LOD", level);
-        object["primitives"] = written.primitives;
-        index = builder_.add("meshes", std::move(object));
-      }
-    }
+  bool shows(std::size_t mesh, std::size_t level) const { return !written_[mesh][level].primitives.empty(); }
+
+  /// The finest level takes the mesh's own place.
+  void add_finest(std::size_t mesh) {
+    Json& object = builder_.at("meshes", impl_.sources[mesh].mesh);
+    erase_extension(object, kStreamExtension);
+    originals_.push_back(object);
+    object["primitives"] = shows(mesh, 0) ? written_[mesh][0].primitives : placeholder_primitives();
+  }
+
+  /// Every node of a lower level has a mesh of its own, though their data are shared: clients that make instances of
+  /// meshes lose them when they throw the level away whose mesh it was.
+  std::size_t add_lower_mesh(std::size_t mesh, std::size_t level) {
+    Json object = originals_[mesh];
+    if (object.contains("name")) object["name"] = text(string_member(object, "name"), "_LOD", level);
+    object["primitives"] = written_[mesh][level].primitives;
+    return builder_.add("meshes", std::move(object));
   }
 
   /// glTF has no empty mesh, but the numbers of the others must stay: one triangle of no size, that nothing shows.
@@ -183,9 +178,9 @@ class SceneWriter {
   /// The stream refines to the finest level and so belongs to its mesh; a level without faces has neither.
   void add_stream(std::size_t mesh) {
     const std::vector<std::byte>& stream = meshes_[mesh].stream;
-    if (stream.empty() || !mesh_index_[mesh][0]) return;
+    if (stream.empty() || !shows(mesh, 0)) return;
     const std::size_t view = builder_.add_view(stream);
-    Json& extensions = builder_.at("meshes", *mesh_index_[mesh][0])["extensions"];
+    Json& extensions = builder_.at("meshes", impl_.sources[mesh].mesh)["extensions"];
     if (!extensions.is_object()) extensions = Json::object();
     extensions[kStreamExtension] = {{"bufferView", view}, {"version", kStreamExtensionVersion}};
     builder_.use_extension(kStreamExtension);
@@ -196,20 +191,20 @@ class SceneWriter {
   void add_nodes(std::size_t mesh, std::size_t node) {
     if (range_.count == 1) {
       Json unused;
-      if (!mesh_index_[mesh][0]) move_mesh_members(builder_.at("nodes", node), unused);
+      if (!shows(mesh, 0)) move_mesh_members(builder_.at("nodes", node), unused);
       return;
     }
     const std::string name = node_name(mesh, node);
     Json finest = level_node(mesh, 0, name);
     move_mesh_members(builder_.at("nodes", node), finest);
-    if (!mesh_index_[mesh][0])
+    if (!shows(mesh, 0))
       for (const char* key : {"mesh", "skin", "weights"}) finest.erase(key);
     const std::size_t first = builder_.document()["nodes"].size();
     std::vector<std::size_t> animated;
     Json ids = Json::array();
     for (std::size_t level = 1; level < range_.count; ++level) {
       ids.push_back(first + level);
-      if (mesh_index_[mesh][level]) animated.push_back(first + level);
+      if (shows(mesh, level)) animated.push_back(first + level);
     }
     finest["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
     finest["extras"]["MSFT_screencoverage"] =
@@ -223,8 +218,8 @@ class SceneWriter {
 
   void add_lower_node(std::size_t mesh, std::size_t level, const std::string& name, const Json& finest) {
     Json lower = level_node(mesh, level, name);
-    if (mesh_index_[mesh][level]) {
-      lower["mesh"] = *mesh_index_[mesh][level];
+    if (shows(mesh, level)) {
+      lower["mesh"] = add_lower_mesh(mesh, level);
       copy_instance_members(finest, lower);
     }
     builder_.add("nodes", std::move(lower));
@@ -254,9 +249,9 @@ class SceneWriter {
   const AssetOptions& options_;
   BufferPlan plan_;
   GlbBuilder builder_;
-  std::vector<std::vector<LevelGeometry>> geometry_;  // by mesh and level, as the next two
+  std::vector<std::vector<LevelGeometry>> geometry_;  // by mesh and level, as the next
   std::vector<std::vector<WrittenLevel>> written_;
-  std::vector<std::vector<std::optional<std::size_t>>> mesh_index_;  // nothing for a level that shows nothing
+  std::vector<Json> originals_;  // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
   AssetLayout layout_;
 };

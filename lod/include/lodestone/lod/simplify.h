@@ -43,8 +43,8 @@ struct AttributeWeights {
   double normal = 0.25;   ///< NORMAL: difference of unit vectors, times the star's radius
   double texcoord = 1;    ///< TEXCOORD_n: how far the texture slides over the surface
   double color = 0.5;     ///< COLOR_n: difference of values, times the star's radius
-  double skin = 1;        ///< JOINTS_n, WEIGHTS_n: share of weight that goes to other joints, times the star's radius
-  double target = 1;      ///< morph targets ("TARGET_i:POSITION"): difference of displacements
+  double skin = 3;        ///< JOINTS_n, WEIGHTS_n: share of weight that goes to other joints, times the star's radius
+  double target = 3;      ///< morph targets ("TARGET_i:POSITION"): difference of displacements
 };
 
 /// A vertex of at least this importance stays.
