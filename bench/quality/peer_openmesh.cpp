@@ -1,5 +1,6 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
 #include "simplifier.h"
@@ -46,6 +47,9 @@ std::vector<Level> run_openmesh(const Mesh& mesh, std::span<const std::size_t> f
     OpenMesh::Decimater::ModQuadricT<TriMesh>::Handle quadrics;
     decimater.add(quadrics);
     decimater.module(quadrics).unset_max_err();
+    // As OpenMesh's own tool for progressive meshes has it: without it faces turn over, and fandisk grows spikes.
+    OpenMesh::Decimater::ModNormalFlippingT<TriMesh>::Handle no_flips;
+    decimater.add(no_flips);
     decimater.initialize();
     decimater.decimate_to_faces(0, faces);
     const double cpu_seconds = clock.seconds();

@@ -264,12 +264,23 @@ Angles angles_of(const Surface& surface) {
   return angles;
 }
 
+/// Returns whether a face looks away from the original all over: a large one that cuts through a thin part does so only
+/// here and there, where the part's other side is the nearer one.
+bool is_flipped(const Corners& t, Target& original) {
+  const Vec3 normal = t.area_normal();
+  const Vec3 centre = (t.a + t.b + t.c) * (1.0 / 3);
+  original.jump();
+  for (const Vec3& p : {centre, (centre + t.a * 2) * (1.0 / 3), (centre + t.b * 2) * (1.0 / 3),
+                        (centre + t.c * 2) * (1.0 / 3)}) {
+    if (dot(original.nearest(p).normal, normal) >= 0) return false;
+  }
+  return true;
+}
+
 std::size_t flipped_faces(const Surface& surface, Target& original) {
   std::size_t count = 0;
   for (std::size_t f = 0; f < surface.faces.size(); ++f) {
-    const Corners t = corners_of(surface, f);
-    original.jump();
-    if (dot(original.nearest((t.a + t.b + t.c) * (1.0 / 3)).normal, t.area_normal()) < 0) ++count;
+    if (is_flipped(corners_of(surface, f), original)) ++count;
   }
   return count;
 }

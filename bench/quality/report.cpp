@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::size_t kFewestFaces = 12;
 constexpr double kMissedShare = 0.05;  // beyond it a level does not stand for its target
+constexpr double kSameShare = 0.01;    // face counts this close are one target
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool missed(const Row& row) {
@@ -69,11 +71,14 @@ std::vector<Target> targets_of(const Model& model, const std::vector<double>& ra
     const auto faces = static_cast<std::size_t>(std::lround(ratio * static_cast<double>(model.mesh.face_count())));
     if (faces >= kFewestFaces) targets[faces] = {faces, ratio, false};
   }
-  for (const std::size_t faces : model.paper_counts) {
-    if (!with_paper) break;
-    Target& target = targets[faces];
-    target.faces = faces;
-    target.paper = true;
+  for (const std::size_t faces : with_paper ? model.paper_counts : std::vector<std::size_t>{}) {
+    // A published count that is a ratio's but for rounding stands for both.
+    const auto close = std::find_if(targets.begin(), targets.end(), [&](const auto& entry) {
+      return std::abs(static_cast<double>(entry.first) / static_cast<double>(faces) - 1) < kSameShare;
+    });
+    const double ratio = close == targets.end() ? 0 : close->second.ratio;
+    if (close != targets.end()) targets.erase(close);
+    targets[faces] = {faces, ratio, true};
   }
   std::vector<Target> result;
   for (const auto& [faces, target] : targets) result.push_back(target);
@@ -119,7 +124,7 @@ std::string summary_table(const std::vector<Row>& rows, const std::vector<Simpli
   std::ostringstream out;
   out << "### Over all models\n\nGeometric means as multiples of meshoptimizer's: mean / rms / max / normals.\n\n|";
   for (const double ratio : ratios) out << " | " << percent_text(ratio);
-  out << " |\n|---" ;
+  out << " |\n|---";
   for (std::size_t i = 0; i < ratios.size(); ++i) out << "|---";
   out << "|\n";
   for (const Simplifier& simplifier : simplifiers) {
