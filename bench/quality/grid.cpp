@@ -53,13 +53,15 @@ Result<Setting> parse_setting(const std::string& text) {
   Setting setting{text, {}, false};
   std::istringstream words(text);
   for (std::string word; std::getline(words, word, ',');) {
-    if (!apply_word(word, setting)) return fail(ErrorCode::InvalidArgument, "setting '" + text + "': unknown '" + word + "'");
+    if (apply_word(word, setting)) continue;
+    return fail(ErrorCode::InvalidArgument, "setting '" + text + "': unknown '" + word + "'");
   }
   return setting;
 }
 
 std::vector<std::string> default_settings() {
-  return {"hybrid", "hybrid,crease=30", "hybrid,crease=60", "gaussian", "mean", "principal", "mean,current", "mean,density"};
+  return {"hybrid", "hybrid,crease=30", "hybrid,crease=60", "gaussian",
+          "mean",   "principal",        "mean,current",     "mean,density"};
 }
 
 void run_grid(const std::vector<Setting>& settings, const Models& models, const std::vector<double>& ratios,
@@ -85,8 +87,8 @@ void run_grid(const std::vector<Setting>& settings, const Models& models, const 
       const std::vector<Target> targets = targets_of(model, ratios, false);
       std::vector<std::size_t> counts;
       for (const Target& target : targets) counts.push_back(target.faces);
-      const auto levels = lodestone_stream(settings[s].with_attributes ? model.attributed : model.mesh, counts,
-                                           settings[s].options);
+      const auto levels =
+          lodestone_stream(settings[s].with_attributes ? model.attributed : model.mesh, counts, settings[s].options);
       cpu_seconds += levels.empty() ? 0 : levels.front().cpu_seconds;
       for (std::size_t t = 0; t < targets.size(); ++t) {
         rows.push_back({model.name, targets[t], &keys[s], referees[m].judge(levels[t].surface), levels[t].cpu_seconds});

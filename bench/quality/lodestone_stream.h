@@ -7,6 +7,7 @@
 namespace lodestone::bench {
 
 /// Simplifies to the base mesh once and takes every level out of the stream: each has the CPU time of the whole.
-std::vector<Level> lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts, SimplifyOptions options);
+std::vector<Level> lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts,
+                                    SimplifyOptions options);
 
 }  // namespace lodestone::bench

@@ -29,8 +29,8 @@ struct Options {
   std::string data;
   std::vector<std::string> models;  ///< parts of names; empty: all
   std::vector<double> percents = {50, 10, 2, 0.5};
-  std::vector<std::string> only;    ///< keys of simplifiers; empty: all
-  std::size_t samples = 500'000;    ///< each way
+  std::vector<std::string> only;  ///< keys of simplifiers; empty: all
+  std::size_t samples = 500'000;  ///< each way
   bool fast = false;
   bool check = false;
   bool grid = false;
@@ -55,7 +55,8 @@ int check_referee(const Options& options) {
     std::fprintf(stderr, "%s: no metro/metro.tsv\n", options.data.c_str());
     return 2;
   }
-  std::printf("The referee over Metro: mean / rms / max, mesh units.\n\n| | direction | referee | Metro | share |\n|---|---|---|---|---|\n");
+  std::puts("The referee over Metro: mean / rms / max, mesh units.\n");
+  std::puts("| | direction | referee | Metro | share |\n|---|---|---|---|---|");
   std::string line;
   std::getline(table, line);  // headings
   while (std::getline(table, line)) {
@@ -110,10 +111,10 @@ void compare_on(const Model& model, const std::vector<Target>& targets, const st
 
 void print_head(const std::vector<std::string>& missing_models) {
   std::puts(
-      "Distances in % of the original's bounding-box diagonal: mean and rms are those of both directions, averaged, max is "
-      "the larger. Normals: mean angle over the original's area. Minimum angle: mean of the faces' smallest. Edges of more "
-      "than two faces and slivers (an angle under 1°): beyond the original's. Flipped: looking away from the original. "
-      "CPU: the simplification alone; lodestone's goes to the base mesh once, for all levels.\n");
+      "Distances in % of the original's bounding-box diagonal: mean and rms are those of both directions, averaged, max "
+      "is the larger. Normals: mean angle over the original's area. Minimum angle: mean of the faces' smallest. Edges "
+      "of more than two faces and slivers (an angle under 1°): beyond the original's. Flipped: looking away from the "
+      "original. CPU: the simplification alone; lodestone's goes to the base mesh once, for all levels.\n");
   std::vector<std::string> missing = missing_simplifiers();
   missing.insert(missing.end(), missing_models.begin(), missing_models.end());
   for (const auto& name : missing) std::printf("Not found: %s.\n", name.c_str());
@@ -177,8 +178,9 @@ int main(int argc, char** argv) {
   app.add_flag("--fast", options.fast, "10 % and 2 % alone, a tenth of the samples");
   app.add_flag("--check", options.check, "measure what the Metro tool measured, and print both");
   app.add_option("--readme", options.readme, "file whose table between the marker comments is replaced");
-  auto* grid = app.add_option("--grid", options.settings, "lodestone alone with each of these settings, e.g. mean,current")
-                   ->expected(0, 1000);
+  auto* grid =
+      app.add_option("--grid", options.settings, "lodestone alone with each of these settings, e.g. mean,current")
+          ->expected(0, 1000);
   CLI11_PARSE(app, argc, argv);
   options.grid = grid->count() > 0;
   return lodestone::bench::run(options);

@@ -68,8 +68,8 @@ Model model_of(std::string name, const TriangleSoup& soup, std::vector<std::size
           std::move(paper_counts)};
 }
 
-// Generated surfaces. Vertices lie on the surface wherever the parameters fall; those are shifted at random by a third of
-// a step, because on a regular grid everything ties.
+// Generated surfaces. Vertices lie on the surface wherever the parameters fall; those are shifted at random by a third
+// of a step, because on a regular grid everything ties.
 
 /// Returns the same number in [−1, 1] for the same pair everywhere.
 double jitter(std::uint64_t i, std::uint64_t salt) {

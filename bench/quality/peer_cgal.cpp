@@ -124,9 +124,9 @@ std::vector<Level> collapse(SurfaceMesh& mesh, Snapshots& snapshots, const Param
 std::vector<Level> run_cgal_lindstrom_turk(const Mesh& mesh, std::span<const std::size_t> face_counts) {
   SurfaceMesh copy = to_cgal(mesh);
   Snapshots snapshots(face_counts);
-  return collapse(copy, snapshots,
-                  np::get_cost(sms::LindstromTurk_cost<SurfaceMesh>())
-                      .get_placement(sms::LindstromTurk_placement<SurfaceMesh>()));
+  return collapse(
+      copy, snapshots,
+      np::get_cost(sms::LindstromTurk_cost<SurfaceMesh>()).get_placement(sms::LindstromTurk_placement<SurfaceMesh>()));
 }
 
 std::vector<Level> run_cgal_lindstrom_turk_end_points(const Mesh& mesh, std::span<const std::size_t> face_counts) {

@@ -14,9 +14,13 @@ TriMesh to_openmesh(const Mesh& mesh) {
   TriMesh result;
   for (const Vec3f& p : mesh.positions) result.add_vertex({p.x, p.y, p.z});
   for (Index c = 0; c < mesh.corner_wedge.size(); c += 3) {
-    const auto vertex = [&](Index corner) { return TriMesh::VertexHandle(static_cast<int>(mesh.corner_vertex(corner))); };
+    const auto vertex = [&](Index corner) {
+      return TriMesh::VertexHandle(static_cast<int>(mesh.corner_vertex(corner)));
+    };
     result.add_face(vertex(c), vertex(c + 1), vertex(c + 2));
   }
+  result.request_face_normals();
+  result.update_face_normals();
   return result;
 }
 

@@ -1,10 +1,11 @@
-// P. Cignoni, C. Rocchini, R. Scopigno: Metro: measuring error on simplified surfaces. Computer Graphics Forum 17(2), 1998.
+// P. Cignoni, C. Rocchini, R. Scopigno: Metro: measuring error on simplified surfaces. Computer Graphics Forum 17(2),
+// 1998.
 //
 // Metro's default: ten samples for each face of the larger mesh, 100,000 at least; one at each vertex, the same number
-// on a unit of length of the edges as on a unit of length of the area, the rest over the faces. It draws at random; here
-// the samples of edges and faces stand at equal steps of accumulated length and area, so that every run is the same. Of
-// edges and faces only a share is taken where Metro would take more samples than asked for; vertices then weigh as much
-// less, so that means stay what they are.
+// on a unit of length of the edges as on a unit of length of the area, the rest over the faces. It draws at random;
+// here the samples of edges and faces stand at equal steps of accumulated length and area, so that every run is the
+// same. Of edges and faces only a share is taken where Metro would take more samples than asked for; vertices then
+// weigh as much less, so that means stay what they are.
 
 #include "referee.h"
 
@@ -32,9 +33,9 @@ using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterato
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kSliverAngle = 1;           // degrees
-constexpr std::size_t kSamplesOfFace = 10;   // Metro's
-constexpr std::size_t kMinSamples = 100'000; // Metro's
+constexpr double kSliverAngle = 1;            // degrees
+constexpr std::size_t kSamplesOfFace = 10;    // Metro's
+constexpr std::size_t kMinSamples = 100'000;  // Metro's
 
 Kernel::Point_3 to_cgal(const Vec3& p) { return {p.x, p.y, p.z}; }
 
@@ -270,8 +271,8 @@ bool is_flipped(const Corners& t, Target& original) {
   const Vec3 normal = t.area_normal();
   const Vec3 centre = (t.a + t.b + t.c) * (1.0 / 3);
   original.jump();
-  for (const Vec3& p : {centre, (centre + t.a * 2) * (1.0 / 3), (centre + t.b * 2) * (1.0 / 3),
-                        (centre + t.c * 2) * (1.0 / 3)}) {
+  for (const Vec3& p :
+       {centre, (centre + t.a * 2) * (1.0 / 3), (centre + t.b * 2) * (1.0 / 3), (centre + t.c * 2) * (1.0 / 3)}) {
     if (dot(original.nearest(p).normal, normal) >= 0) return false;
   }
   return true;

@@ -18,11 +18,11 @@ struct OneWay {
 /// What the referee says of one simplified surface. Distances are in % of the original's diagonal.
 struct Judgement {
   std::size_t faces = 0;
-  double mean = 0;                ///< mean of both directions
-  double rms = 0;                 ///< mean of both directions
-  double maximum = 0;             ///< largest of both directions
-  double normal_angle = 0;        ///< degrees, over the original's area
-  double minimum_angle = 0;       ///< degrees, mean of the faces' smallest angles
+  double mean = 0;                    ///< mean of both directions
+  double rms = 0;                     ///< mean of both directions
+  double maximum = 0;                 ///< largest of both directions
+  double normal_angle = 0;            ///< degrees, over the original's area
+  double minimum_angle = 0;           ///< degrees, mean of the faces' smallest angles
   std::size_t nonmanifold_edges = 0;  ///< edges of more than two faces, beyond the original's count
   std::size_t flipped_faces = 0;      ///< faces that look away from the original all over, where it is nearest
   std::size_t sliver_faces = 0;       ///< faces with an angle under 1°, beyond the original's count

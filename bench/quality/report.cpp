@@ -45,7 +45,7 @@ std::string relative_text(double value) { return std::isnan(value) ? "–" : for
 /// The rows of one target by key, those that missed it left out.
 using Field = std::map<std::string, const Row*>;
 
-double best(const Field& field, const std::vector<std::string>& keys, double Judgement::* figure) {
+double best(const Field& field, const std::vector<std::string>& keys, double Judgement::*figure) {
   double lowest = kNone;
   for (const auto& key : keys) {
     const auto found = field.find(key);
@@ -86,7 +86,7 @@ std::vector<Target> targets_of(const Model& model, const std::vector<double>& ra
 }
 
 double geometric_mean(const std::vector<Row>& rows, const std::string& key, const std::string& reference_key,
-                      double ratio, double Judgement::* figure) {
+                      double ratio, double Judgement::*figure) {
   double sum = 0;
   int count = 0;
   for (const Row& row : rows) {
@@ -147,7 +147,8 @@ std::string standing_table(const std::vector<Row>& rows) {
   const std::vector<std::string> subset = {"meshopt", "openmesh", "lt-end"};
   const std::vector<std::string> peers = {"meshopt", "openmesh", "lt-end", "lt", "gh"};
   std::ostringstream out;
-  out << "### Where the stream stands\n\nAs multiples of the best of the peers named; bold: above the goal, which is 0.75 "
+  out << "### Where the stream stands\n\nAs multiples of the best of the peers named; bold: above the goal, which is "
+         "0.75 "
          "for the first two columns and 1 for the others. Angles: of the best peer, free ones included; minimum angles "
          "are inverted, so that below 1 is better everywhere.\n\n"
          "| | mean, OpenMesh or meshoptimizer | rms | mean, end-point LT | rms | max, subset peers | normals | min. "
@@ -161,7 +162,7 @@ std::string standing_table(const std::vector<Row>& rows) {
       }
     }
     const Judgement& j = row.judgement;
-    const auto against = [&](const auto& keys, double Judgement::* figure, double goal) {
+    const auto against = [&](const auto& keys, double Judgement::*figure, double goal) {
       return judged(j.*figure, best(field, keys, figure), goal);
     };
     double widest = kNone;

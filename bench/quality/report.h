@@ -32,7 +32,7 @@ struct Row {
 /// Returns the geometric mean of a figure over that of a reference; unset (NaN) where no pair of rows has both.
 /// Rows that missed their face count by more than 5 % are left out on either side.
 double geometric_mean(const std::vector<Row>& rows, const std::string& key, const std::string& reference_key,
-                      double ratio, double Judgement::* figure);
+                      double ratio, double Judgement::*figure);
 
 // Markdown, each with a heading or sentence of its own.
 std::string model_table(const Model& model, const std::vector<Row>& rows);
@@ -43,7 +43,8 @@ std::string standing_table(const std::vector<Row>& rows);
 /// The published counts alone, for the README.
 std::string figures_table(const std::vector<Row>& rows, const std::vector<Simplifier>& simplifiers);
 
-/// Puts `text` between the lines `<!-- quality: begin -->` and `<!-- quality: end -->` of a file; returns whether it has them.
+/// Puts `text` between the lines `<!-- quality: begin -->` and `<!-- quality: end -->` of a file; returns whether it
+/// has them.
 bool replace_between_markers(const std::string& path, const std::string& text);
 
 /// Three significant digits.

@@ -10,7 +10,8 @@ Surface surface_of(const Mesh& mesh) {
   for (const Vec3f& p : mesh.positions) surface.points.emplace_back(p);
   surface.faces.reserve(mesh.face_count());
   for (Index corner = 0; corner < mesh.corner_wedge.size(); corner += 3) {
-    surface.faces.push_back({mesh.corner_vertex(corner), mesh.corner_vertex(corner + 1), mesh.corner_vertex(corner + 2)});
+    surface.faces.push_back(
+        {mesh.corner_vertex(corner), mesh.corner_vertex(corner + 1), mesh.corner_vertex(corner + 2)});
   }
   return surface;
 }

@@ -10,8 +10,8 @@ namespace lodestone::bench {
 
 /// Triangles as any simplifier gives them: positions alone, in doubles because some compute in them.
 struct Surface {
-  std::vector<Vec3> points;                ///< may hold points that no face uses
-  std::vector<std::array<Index, 3>> faces; ///< indices into `points`, counter-clockwise from outside
+  std::vector<Vec3> points;                 ///< may hold points that no face uses
+  std::vector<std::array<Index, 3>> faces;  ///< indices into `points`, counter-clockwise from outside
 };
 
 /// Returns the faces of a mesh over its vertices; attributes and materials are left out.
