@@ -33,8 +33,9 @@ using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterato
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kSliverAngle = 1;            // degrees
-constexpr std::size_t kSamplesOfFace = 10;    // Metro's
+constexpr double kSliverAngle = 1;          // degrees
+constexpr std::size_t kSamplesOfFace = 10;  // Metro's
+constexpr double kFewestOfArea = 20'000;
 constexpr std::size_t kMinSamples = 100'000;  // Metro's
 
 Kernel::Point_3 to_cgal(const Vec3& p) { return {p.x, p.y, p.z}; }
@@ -179,7 +180,10 @@ class Sampler {
 
   void faces() {
     if (area_ <= 0) return;
-    const double density = rest_ * share_ / area_;
+    // Where faces are thin, edges use up all that Metro would take; angles need samples of the area all the same.
+    const double of_metro = rest_ * share_;
+    const double count = std::max(of_metro, kFewestOfArea);
+    const double density = count / area_;
     // A sequence of low discrepancy in the unit square, folded into the triangle: (k/ρ, k/ρ²), ρ³ = ρ + 1.
     constexpr double kStepU = 0.7548776662466927;
     constexpr double kStepV = 0.5698402909980532;
@@ -197,7 +201,7 @@ class Sampler {
         const bool fold = u + v > 1;
         const Vec3 p = t.a + (t.b - t.a) * (fold ? 1 - u : u) + (t.c - t.a) * (fold ? 1 - v : v);
         const auto hit = target_.nearest(p);
-        totals_.add(hit.distance, 1);
+        totals_.add(hit.distance, of_metro / count);
         totals_.add_angle(angle_between(normal, hit.normal));
       }
       due -= taken;
