@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+
+#include "surface.h"
+
+namespace lodestone::bench {
+
+/// One result of a simplifier.
+struct Level {
+  Surface surface;
+  double cpu_seconds = 0;  ///< of the simplification alone, from the mesh as the tool holds it
+};
+
+/// A row of the table: something that takes a mesh to face counts.
+struct Simplifier {
+  std::string key;   ///< short, for `--only`
+  std::string name;  ///< for people
+  bool subset;       ///< vertices stay where they were
+  /// Returns one level for each of `face_counts`, which descend; a level may miss its count.
+  /// Pre: `mesh` comes from `assemble` and has no attributes.
+  std::function<std::vector<Level>(const Mesh& mesh, std::span<const std::size_t> face_counts)> run;
+};
+
+/// Returns every simplifier this build has. The one place where a new one is added to the table.
+std::vector<Simplifier> simplifiers();
+
+/// Returns the names of those that were not found when the build was configured.
+std::vector<std::string> missing_simplifiers();
+
+std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_cgal_lindstrom_turk(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_cgal_lindstrom_turk_end_points(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_cgal_garland_heckbert(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_openmesh(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_meshoptimizer(const Mesh& mesh, std::span<const std::size_t> face_counts);
+
+/// Measures CPU time of this process, all threads together.
+class CpuClock {
+ public:
+  CpuClock();
+  double seconds() const;  ///< since it was made
+
+ private:
+  double start_;
+};
+
+}  // namespace lodestone::bench

@@ -1,0 +1,45 @@
+#include <ctime>
+
+#include "simplifier.h"
+
+namespace lodestone::bench {
+namespace {
+
+double cpu_now() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+CpuClock::CpuClock() : start_(cpu_now()) {}
+double CpuClock::seconds() const { return cpu_now() - start_; }
+
+std::vector<Simplifier> simplifiers() {
+  return {
+      {"stream", "lodestone, stream", true, run_lodestone_stream},
+      {"lt-end", "Lindstrom–Turk's cost, end points (CGAL, not stock)", true, run_cgal_lindstrom_turk_end_points},
+      {"meshopt", "meshoptimizer", true, run_meshoptimizer},
+#ifdef LODESTONE_BENCH_OPENMESH
+      {"openmesh", "OpenMesh, quadrics", true, run_openmesh},
+#endif
+      {"lt", "CGAL Lindstrom–Turk", false, run_cgal_lindstrom_turk},
+#ifdef LODESTONE_BENCH_EIGEN
+      {"gh", "CGAL Garland–Heckbert", false, run_cgal_garland_heckbert},
+#endif
+  };
+}
+
+std::vector<std::string> missing_simplifiers() {
+  std::vector<std::string> missing;
+#ifndef LODESTONE_BENCH_OPENMESH
+  missing.emplace_back("OpenMesh (libopenmesh-dev)");
+#endif
+#ifndef LODESTONE_BENCH_EIGEN
+  missing.emplace_back("CGAL Garland–Heckbert (libeigen3-dev)");
+#endif
+  return missing;
+}
+
+}  // namespace lodestone::bench
