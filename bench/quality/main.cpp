@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
   app.add_option("--data", options.data, "folder of models, laid out as shared/data");
   app.add_option("--models", options.models, "parts of models' names")->delimiter(',');
   app.add_option("--ratios", options.percents, "percent of the faces")->delimiter(',');
-  app.add_option("--only", options.only, "simplifiers: stream, lt-end, meshopt, openmesh, lt, gh")->delimiter(',');
+  app.add_option("--only", options.only, "simplifiers: levels, stream, lt-end, meshopt, openmesh, lt, gh")->delimiter(',');
   app.add_option("--samples", options.samples, "of a surface, each way, at most");
   app.add_flag("--fast", options.fast, "10 % and 2 % alone, a tenth of the samples");
   app.add_flag("--check", options.check, "measure what the Metro tool measured, and print both");

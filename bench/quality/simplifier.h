@@ -34,6 +34,7 @@ std::vector<Simplifier> simplifiers();
 /// Returns the names of those that were not found when the build was configured.
 std::vector<std::string> missing_simplifiers();
 
+std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_cgal_lindstrom_turk(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_cgal_lindstrom_turk_end_points(const Mesh& mesh, std::span<const std::size_t> face_counts);

@@ -18,6 +18,7 @@ double CpuClock::seconds() const { return cpu_now() - start_; }
 
 std::vector<Simplifier> simplifiers() {
   return {
+      {"levels", "lodestone, levels", false, run_lodestone_levels},
       {"stream", "lodestone, stream", true, run_lodestone_stream},
       {"lt-end", "Lindstrom–Turk's cost, end points (CGAL, not stock)", true, run_cgal_lindstrom_turk_end_points},
       {"meshopt", "meshoptimizer", true, run_meshoptimizer},

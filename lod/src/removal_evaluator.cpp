@@ -21,7 +21,8 @@ constexpr double kMinNormalCosine = 0.2;      // a new face may turn this far fr
 constexpr double kMinShape = 1e-3;            // a new face's height over its longest edge
 constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured
 constexpr double kBridgeWeight = 3;           // of new surface where the star had none, against distances of points
-constexpr double kLineWeight = 1;             // of a border, material border or crease that moves
+constexpr double kLineWeight = 1;             // of a border or crease that moves
+constexpr double kMaterialWeight = 4;         // of a border between materials that moves: faces change their colour
 constexpr double kSeamWeight = 0.1;           // of a seam that moves: what counts there is the price of the attributes
 constexpr double kTieBreak = 0.2;             // weight of the volume swept, as a length, against a pure curvature error
 constexpr double kMinCurvatureChange = 1e-4;  // radians; below it curvature no longer separates removals
@@ -277,7 +278,7 @@ double RemovalEvaluator::line_weight(std::size_t spoke) const {
   const Index after = star_.corners[spoke];
   const Index before = star_.corners[spoke > 0 ? spoke - 1 : star_.corners.size() - 1];
   if (mesh.is_crease(previous_corner(after))) return kLineWeight;
-  return mesh.material(face_of_corner(after)) != mesh.material(face_of_corner(before)) ? kLineWeight : kSeamWeight;
+  return mesh.material(face_of_corner(after)) != mesh.material(face_of_corner(before)) ? kMaterialWeight : kSeamWeight;
 }
 
 /// The wedge of `vertex` whose attributes are most like those of another.
