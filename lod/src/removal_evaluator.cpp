@@ -17,7 +17,8 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinNormalCosine = 0.2;      // a new face may turn this far from the old one at its rim
+constexpr double kMinNormalCosine = 0.2;      // a new face may turn this far from the old one at its rim, at first
+constexpr double kAnyCosine = -2;             // any angle will do
 constexpr double kMinShape = 1e-3;            // a new face's height over its longest edge
 constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured
 constexpr double kBridgeWeight = 3;           // of new surface where the star had none, against distances of points
@@ -43,6 +44,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
     : state_(&state),
       options_(&options),
       attributes_(state.mesh, options.weights),
+      min_cosine_(kMinNormalCosine),
       ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
@@ -58,6 +60,12 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   std::vector<Index> next(wedge_begin_.begin(), wedge_begin_.end() - 1);
   vertex_wedges_.resize(mesh.wedge_count());
   for (Index w = 0; w < mesh.wedge_count(); ++w) vertex_wedges_[next[mesh.wedge_vertex[w]]++] = w;
+}
+
+bool RemovalEvaluator::relax_angles() {
+  if (min_cosine_ == kAnyCosine) return false;
+  min_cosine_ = min_cosine_ > 0 ? 0 : kAnyCosine;
+  return true;
 }
 
 Evaluation RemovalEvaluator::evaluate(Index vertex, Removal& removal, Choice& choice) {
@@ -446,13 +454,13 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
       continue;
     }
     at_rim = true;
-    if (any_angle_) continue;
+    if (min_cosine_ == kAnyCosine) continue;
     const Vec3& fine = fine_normal_[sector.ring_begin + from];
     const double cosine = dot(entry.normal, fine);
-    if (cosine < 0 || cosine * cosine < kMinNormalCosine * kMinNormalCosine * square_area * squared_length(fine))
+    if (cosine < 0 || cosine * cosine < min_cosine_ * min_cosine_ * square_area * squared_length(fine))
       return Verdict::Flip;
   }
-  if (!any_angle_ && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Flip;
+  if (min_cosine_ != kAnyCosine && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Flip;
   return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Flip : Verdict::Legal;
 }
 

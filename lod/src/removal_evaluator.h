@@ -57,9 +57,9 @@ class RemovalEvaluator {
   /// other is tried.
   Evaluation evaluate(Index vertex, Removal& removal, Choice& choice);
 
-  /// From now on lets faces turn by any angle: where nothing else is left to do, a worse shape is better than too many
-  /// faces. Textures still must not turn over.
-  void allow_any_angle() { any_angle_ = true; }
+  /// From now on lets new faces turn further: at first up to a right angle, then by any angle, where a worse shape is
+  /// better than too many faces. Textures still must not turn over. Returns false where there is no further to go.
+  bool relax_angles();
 
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
@@ -167,7 +167,7 @@ class RemovalEvaluator {
   AttributeCost attributes_;
   std::vector<Index> wedge_begin_;     // by vertex: its wedges in vertex_wedges_; empty without seams
   std::vector<Index> vertex_wedges_;
-  bool any_angle_ = false;
+  double min_cosine_;  // of the angle between a new face and the old one at its rim
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;

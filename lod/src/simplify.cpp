@@ -36,6 +36,9 @@ constexpr std::size_t kSmallPiece = 16;
 // How many of the vertices left are looked at, along the curve and each way, for one near a piece that vanishes.
 constexpr int kNearCandidates = 32;
 
+// Where fewer of the vertices left than this share can be removed, faces may turn further than is good for round shapes.
+constexpr double kFewLegal = 0.7;
+
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
 
 class Simplifier {
@@ -60,7 +63,7 @@ class Simplifier {
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
   void update_dirty();
-  bool allow_any_angle();
+  bool relax_angles();
   bool target_met();
   void note_charge(double cost);
   std::vector<float> charges() const;
@@ -95,7 +98,8 @@ class Simplifier {
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
   Index round_ = 0;
-  bool any_angle_ = false;
+  bool angles_relaxed_ = false;
+  std::size_t vertices_left_ = 0;  // but for locked ones
   Removal removal_;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
@@ -139,12 +143,18 @@ void Simplifier::evaluate(Index vertex) {
 bool Simplifier::choose_candidates() {
   candidates_.clear();
   std::fill(piece_moves_.begin(), piece_moves_.end(), std::uint8_t{0});
+  vertices_left_ = 0;
   for (Index v = 0; v < cost_.size(); ++v) {
+    vertices_left_ += state_.connectivity.has_vertex(v) && verdict_[v] != Verdict::Locked ? 1 : 0;
     if (cost_[v] == kIllegal) continue;
     candidates_.push_back(v);
     piece_moves_[pieces_.piece_of(v)] = 1;
   }
   if (candidates_.empty()) return false;
+  if (!angles_relaxed_ && static_cast<double>(candidates_.size()) < kFewLegal * static_cast<double>(vertices_left_)) {
+    relax_angles();
+    return choose_candidates();
+  }
   const double narrow = options_.metric == Metric::Hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size())));
@@ -265,13 +275,12 @@ bool Simplifier::run_round() {
   return remove_pieces(!any_left) || any_left;
 }
 
-/// Where nothing else can be removed: drops the limit on how far faces may turn. Returns whether that is news.
-bool Simplifier::allow_any_angle() {
-  if (any_angle_) return false;
-  any_angle_ = true;
-  evaluator_.allow_any_angle();
+/// Lets faces turn further, and looks anew at the vertices that this kept. Returns whether there was further to go.
+bool Simplifier::relax_angles() {
+  if (!evaluator_.relax_angles()) return false;
   for (Index v = 0; v < cost_.size(); ++v)
     if (verdict_[v] == Verdict::Flip && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
+  angles_relaxed_ = true;
   return true;
 }
 
@@ -399,7 +408,7 @@ SimplifyResult Simplifier::run() {
   prepare();
   const double full_faces = static_cast<double>(state_.connectivity.face_count());
   while (!target_met()) {
-    if (!run_round() && !allow_any_angle()) break;
+    if (!run_round() && !relax_angles()) break;
     bounds_.end_round(state_.connectivity);
     if (bounds_.current() > options_.stop.max_deviation) {
       stop_reason_ = StopReason::Deviation;
