@@ -153,10 +153,11 @@ class SceneWriter {
 
   /// The finest level takes the mesh's own place.
   void add_finest(std::size_t mesh) {
-    Json& object = builder_.at("meshes", impl_.sources[mesh].mesh);
+    Json primitives = shows(mesh, 0) ? written_[mesh][0].primitives : placeholder_primitives();
+    Json& object = builder_.at("meshes", impl_.sources[mesh].mesh);  // only now: adding objects moves the others
     erase_extension(object, kStreamExtension);
     originals_.push_back(object);
-    object["primitives"] = shows(mesh, 0) ? written_[mesh][0].primitives : placeholder_primitives();
+    object["primitives"] = std::move(primitives);
   }
 
   /// Every node of a lower level has a mesh of its own, though their data are shared: clients that make instances of
