@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include <lodestone/io/file.h>
@@ -58,37 +57,6 @@ Result<void> check_known(const std::map<std::string, PartSettings>& parts, const
   return {};
 }
 
-/// The first component of every wedge.
-std::vector<double> first_components(const Attribute& attribute) {
-  const std::size_t bytes = attribute.element_bytes();
-  std::vector<double> values(attribute.data.size() / bytes);
-  const auto load = [&](std::size_t i, auto value, double largest) {
-    std::memcpy(&value, &attribute.data[i * bytes], sizeof value);
-    return attribute.normalized ? static_cast<double>(value) / largest : static_cast<double>(value);
-  };
-  for (std::size_t i = 0; i < values.size(); ++i) switch (attribute.type) {
-      case ComponentType::Int8:
-        values[i] = load(i, std::int8_t{}, 127);
-        break;
-      case ComponentType::UInt8:
-        values[i] = load(i, std::uint8_t{}, 255);
-        break;
-      case ComponentType::Int16:
-        values[i] = load(i, std::int16_t{}, 32767);
-        break;
-      case ComponentType::UInt16:
-        values[i] = load(i, std::uint16_t{}, 65535);
-        break;
-      case ComponentType::UInt32:
-        values[i] = load(i, std::uint32_t{}, 4294967295.0);
-        break;
-      case ComponentType::Float32:
-        values[i] = load(i, float{}, 1);
-        break;
-    }
-  return values;
-}
-
 double painted_importance(double component) {
   constexpr double kFullyPainted = 0.999;  // eight bits of colour, gone through a float
   return component >= kFullyPainted ? static_cast<double>(kLockingImportance) : std::pow(16.0, 2 * component - 1);
@@ -97,9 +65,10 @@ double painted_importance(double component) {
 Result<void> multiply_by_attribute(const SceneMesh& mesh, const Attribute& attribute, std::vector<double>& importance) {
   const bool is_colour = attribute.name.starts_with("COLOR_");
   std::vector<double> largest(importance.size(), 0);
-  const std::vector<double> values = first_components(attribute);
-  for (std::size_t w = 0; w < values.size(); ++w) {
-    const double value = is_colour ? painted_importance(values[w]) : values[w];
+  const std::vector<float> values = attribute_values(attribute);
+  for (std::size_t w = 0; w < mesh.mesh.wedge_count(); ++w) {
+    const auto first = static_cast<double>(values[w * attribute.component_count]);
+    const double value = is_colour ? painted_importance(first) : first;
     if (!(value >= 0))
       return fail(ErrorCode::InvalidArgument, "mesh " + quoted(std::string_view(mesh.name)) + ": " + attribute.name +
                                                   " has " + number_text(value) + ", importance is 0 or more");

@@ -1,6 +1,3 @@
-// Points within faces follow M. Roberts' quasirandom sequence R2 ("The unreasonable effectiveness of quasirandom
-// sequences", 2018), as in the library's deviation.
-
 #include "error_map.h"
 
 #include <algorithm>
@@ -13,20 +10,6 @@ namespace {
 constexpr std::size_t kSampleCount = 50'000;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-double face_area(const Mesh& mesh, Index face) {
-  const Vec3 a = mesh.corner_position(3 * face);
-  return 0.5 * length(cross(mesh.corner_position(3 * face + 1) - a, mesh.corner_position(3 * face + 2) - a));
-}
-
-Vec3 point_of(const Mesh& mesh, Index face, std::size_t k) {
-  const double n = static_cast<double>(k);
-  double u = std::fmod(0.5 + n * 0.7548776662466927, 1.0);
-  double v = std::fmod(0.5 + n * 0.5698402909980532, 1.0);
-  if (u + v > 1) u = 1 - u, v = 1 - v;
-  return mesh.corner_position(3 * face) * (1 - u - v) + mesh.corner_position(3 * face + 1) * u +
-         mesh.corner_position(3 * face + 2) * v;
-}
-
 /// Returns the distances at points at equal steps of the area.
 std::vector<double> sampled_errors(const Mesh& mesh, const SurfaceIndex& surface) {
   const double step = surface_area(mesh) / kSampleCount;
@@ -34,8 +17,8 @@ std::vector<double> sampled_errors(const Mesh& mesh, const SurfaceIndex& surface
   double due = 0.5 * step;  // what of the area is left before the next point
   Index hint = kNoIndex;
   for (Index face = 0; face < mesh.face_count(); ++face) {
-    for (due -= face_area(mesh, face); due < 0 && errors.size() < kSampleCount; due += step) {
-      const SurfaceIndex::Hit hit = surface.nearest(point_of(mesh, face, errors.size()), kFar, hint);
+    for (due -= 0.5 * length(area_vector(mesh, face)); due < 0 && errors.size() < kSampleCount; due += step) {
+      const SurfaceIndex::Hit hit = surface.nearest(point_on_face(mesh, face, errors.size()), kFar, hint);
       hint = hit.face;
       errors.push_back(hit.distance);
     }

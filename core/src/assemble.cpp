@@ -180,14 +180,7 @@ Mesh number_by_first_use(const TriangleSoup& soup, const CleanFaces& faces, cons
     mesh.corner_wedge.push_back(wedge);
   }
   mesh.face_material = faces.material;
-  for (const Attribute& attribute : soup.attributes) {
-    Attribute copy{attribute.name, attribute.type, attribute.component_count, attribute.normalized, {}};
-    const std::size_t bytes = attribute.element_bytes();
-    copy.data.resize(bytes * source.size());
-    for (std::size_t w = 0; w < source.size(); ++w)
-      std::memcpy(&copy.data[w * bytes], &attribute.data[source[w] * bytes], bytes);
-    mesh.attributes.push_back(std::move(copy));
-  }
+  for (const Attribute& attribute : soup.attributes) mesh.attributes.push_back(pick_elements(attribute, source));
   return mesh;
 }
 

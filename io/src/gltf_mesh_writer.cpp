@@ -101,13 +101,7 @@ Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<co
   for (const Index wedge : corner_wedge) out.corner_wedge.push_back(wedges.add(wedge));
   for (const Index wedge : wedges.used()) out.wedge_vertex.push_back(vertices.add(mesh.wedge_vertex[wedge]));
   for (const Index vertex : vertices.used()) out.positions.push_back(mesh.positions[vertex]);
-  for (const Attribute* source : attributes) {
-    Attribute a{source->name, source->type, source->component_count, source->normalized, {}};
-    const std::size_t size = a.element_bytes();
-    a.data.reserve(wedges.used().size() * size);
-    for (const Index wedge : wedges.used()) append_bytes(a.data, std::span(source->data).subspan(wedge * size, size));
-    out.attributes.push_back(std::move(a));
-  }
+  for (const Attribute* source : attributes) out.attributes.push_back(pick_elements(*source, wedges.used()));
   return out;
 }
 

@@ -87,15 +87,6 @@ std::vector<Index> to_triangles(std::vector<Index> corners, std::size_t mode) {
   return triangles;
 }
 
-Attribute pick(const Attribute& attribute, std::span<const Index> points) {
-  Attribute picked{attribute.name, attribute.type, attribute.component_count, attribute.normalized, {}};
-  const std::size_t size = attribute.element_bytes();
-  picked.data.resize(points.size() * size);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    std::copy_n(attribute.data.begin() + points[i] * size, size, picked.data.begin() + i * size);
-  return picked;
-}
-
 /// Drops the points that no triangle uses: primitives often share the buffers of a whole mesh.
 void drop_unused_points(Primitive& primitive) {
   std::vector<Index> new_number(primitive.positions.size(), kNoIndex);
@@ -108,8 +99,8 @@ void drop_unused_points(Primitive& primitive) {
   }
   if (kept.size() == new_number.size()) return;
   for (Index& point : primitive.indices) point = new_number[point];
-  for (Attribute& attribute : primitive.attributes) attribute = pick(attribute, kept);
-  for (Attribute& target : primitive.targets) target = pick(target, kept);
+  for (Attribute& attribute : primitive.attributes) attribute = pick_elements(attribute, kept);
+  for (Attribute& target : primitive.targets) target = pick_elements(target, kept);
   for (std::size_t i = 0; i < kept.size(); ++i) primitive.positions[i] = primitive.positions[kept[i]];
   primitive.positions.resize(kept.size());
 }

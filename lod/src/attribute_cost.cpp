@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "attribute_values.h"
+#include "finite_values.h"
 
 namespace lodestone::detail {
 namespace {
@@ -33,7 +33,7 @@ AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) 
 }
 
 void AttributeCost::add_channel(const Attribute& attribute, Kind kind, double weight) {
-  Channel channel{kind, weight, texture_.size(), attribute.component_count, attribute_values(attribute)};
+  Channel channel{kind, weight, texture_.size(), attribute.component_count, finite_values(attribute)};
   if (kind == Kind::Texture) texture_.push_back(channels_.size());
   // Texture coordinates are needed even where they cost nothing: their faces must not turn over.
   if (weight > 0 || kind == Kind::Texture) channels_.push_back(std::move(channel));
@@ -44,7 +44,7 @@ void AttributeCost::add_skin(const Mesh& mesh, const Attribute& joints, double w
   const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
                                   [&](const Attribute& attribute) { return attribute.name == wanted; });
   if (weight <= 0 || found == mesh.attributes.end() || found->component_count != joints.component_count) return;
-  skin_.push_back({weight, joints.component_count, attribute_values(joints), attribute_values(*found)});
+  skin_.push_back({weight, joints.component_count, finite_values(joints), finite_values(*found)});
 }
 
 double AttributeCost::squared_difference(Index wedge, const Place& place, const AttributeScale& scale) const {

@@ -10,7 +10,7 @@
 
 #include <lodestone/lod/deviation.h>
 
-#include "attribute_values.h"
+#include "finite_values.h"
 #include "triangle.h"
 
 namespace lodestone {
@@ -35,27 +35,21 @@ std::vector<Shared> shared_attributes(const Mesh& original, const Mesh& level) {
       return other.name == a.name && other.component_count == a.component_count;
     });
     if (b == level.attributes.end()) continue;
-    shared.push_back({a.component_count, a.name == "NORMAL", attribute_values(a), attribute_values(*b), {a.name}});
+    shared.push_back({a.component_count, a.name == "NORMAL", finite_values(a), finite_values(*b), {a.name}});
   }
   return shared;
 }
 
-/// The faces of one material as a mesh of their own, and where they came from.
+/// The faces of one material, to look for the nearest among them.
 struct MaterialFaces {
-  Mesh mesh;
   std::vector<Index> source_face;
   std::optional<SurfaceIndex> surface;
 };
 
 std::map<Index, MaterialFaces> split(const Mesh& level) {
   std::map<Index, MaterialFaces> parts;
-  for (Index f = 0; f < level.face_count(); ++f) {
-    MaterialFaces& part = parts[level.material_of(f)];
-    if (part.source_face.empty()) part.mesh.positions = level.positions, part.mesh.wedge_vertex = level.wedge_vertex;
-    part.source_face.push_back(f);
-    for (Index k = 0; k < 3; ++k) part.mesh.corner_wedge.push_back(level.corner_wedge[3 * f + k]);
-  }
-  for (auto& [material, part] : parts) part.surface.emplace(part.mesh);
+  for (Index f = 0; f < level.face_count(); ++f) parts[level.material_of(f)].source_face.push_back(f);
+  for (auto& [material, part] : parts) part.surface.emplace(pick_faces(level, part.source_face));
   return parts;
 }
 
@@ -81,8 +75,7 @@ void for_each_sample(const Mesh& mesh, std::size_t sample_count, const Visit& vi
   const double per_face = static_cast<double>(sample_count) / static_cast<double>(mesh.face_count());
   const auto n = static_cast<int>(std::clamp(std::sqrt(per_face), 1.0, 16.0));
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Vec3 a = mesh.corner_position(3 * f);
-    const double area = 0.5 * length(cross(mesh.corner_position(3 * f + 1) - a, mesh.corner_position(3 * f + 2) - a));
+    const double area = 0.5 * length(area_vector(mesh, f));
     for (int i = 0; i < n; ++i)
       for (int j = 0; i + j < n; ++j)
         for (int down = 0; down <= (i + j + 1 < n ? 1 : 0); ++down) {

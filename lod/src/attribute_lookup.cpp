@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "attribute_cost.h"
-#include "attribute_values.h"
+#include "finite_values.h"
 #include "constrained_edges.h"
 #include "triangle.h"
 
@@ -135,24 +135,6 @@ void store_component(ComponentType type, double value, std::byte* out) {
   }
 }
 
-double largest_value(ComponentType type) {
-  switch (type) {
-    case ComponentType::Int8:
-      return 127;
-    case ComponentType::UInt8:
-      return 255;
-    case ComponentType::Int16:
-      return 32767;
-    case ComponentType::UInt16:
-      return 65535;
-    case ComponentType::UInt32:
-      return 4294967295.0;
-    case ComponentType::Float32:
-      return 1;
-  }
-  return 1;
-}
-
 /// Blends one attribute of the original at a place into a wedge of the level.
 void blend(const Mesh& original, const std::vector<float>& values, const SurfacePlace& place, Attribute& attribute,
            Index wedge) {
@@ -169,7 +151,7 @@ void blend(const Mesh& original, const std::vector<float>& values, const Surface
     for (std::size_t i = 0; i < 3; ++i) sum[i] /= norm;
   }
   const std::size_t kept = attribute.name == "TANGENT" ? 3 : width;  // a tangent's sign is no number to blend
-  const double unit = attribute.normalized ? largest_value(attribute.type) : 1;
+  const double unit = attribute.normalized ? largest_component(attribute.type) : 1;
   const std::size_t size = component_bytes(attribute.type);
   for (std::size_t i = 0; i < kept; ++i)
     store_component(attribute.type, sum[i] * unit, &attribute.data[(wedge * width + i) * size]);
@@ -225,7 +207,7 @@ void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
   const SeamedSurface surface(original);
   const WedgeFinder finder(original);
   std::vector<std::vector<float>> values;
-  for (const Attribute& a : original.attributes) values.push_back(is_skinning(a) ? std::vector<float>() : attribute_values(a));
+  for (const Attribute& a : original.attributes) values.push_back(is_skinning(a) ? std::vector<float>() : finite_values(a));
   for (Index w = 0; w < level.wedge_count(); ++w) {
     const Index v = level.wedge_vertex[w];
     if (level.positions[v] == before.positions[v]) continue;

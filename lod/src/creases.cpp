@@ -7,11 +7,6 @@
 namespace lodestone::detail {
 namespace {
 
-Vec3 face_normal(const Mesh& mesh, Index face) {
-  const Vec3 a = mesh.corner_position(3 * face);
-  return cross(mesh.corner_position(3 * face + 1) - a, mesh.corner_position(3 * face + 2) - a);
-}
-
 double texture_area(const Mesh& mesh, const AttributeCost& attributes, std::size_t texture, Index face) {
   const Index* wedge = &mesh.corner_wedge[3 * std::size_t{face}];
   return attributes.texture_area(texture, wedge[0], wedge[1], wedge[2]);
@@ -28,7 +23,7 @@ void mark_creases(const Mesh& mesh, const SimplifyOptions& options, Connectivity
     const Index face = face_of_corner(corner);
     const Index other = face_of_corner(across);
     bool hard = options.crease_angle &&
-                angle_between(face_normal(mesh, face), face_normal(mesh, other)) > *options.crease_angle;
+                angle_between(area_vector(mesh, face), area_vector(mesh, other)) > *options.crease_angle;
     for (std::size_t t = 0; t < attributes.texture_count() && !hard; ++t)
       hard = texture_area(mesh, attributes, t, face) * texture_area(mesh, attributes, t, other) < 0;
     if (hard) connectivity.mark_crease(corner);

@@ -28,11 +28,6 @@ constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's def
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
 constexpr double kLeastFaceShare = 0.125;
 
-Vec3 area_vector(const Mesh& mesh, Index face) {
-  const Vec3 a = mesh.corner_position(3 * face);
-  return cross(mesh.corner_position(3 * face + 1) - a, mesh.corner_position(3 * face + 2) - a);
-}
-
 /// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be 0.
 double add_up(std::vector<double>& sizes) {
   double whole = 0;
@@ -100,7 +95,7 @@ class Samples {
   template <class Visit>
   void for_faces(std::size_t count, const Visit& visit) const {
     step_through(face_until_, count, [&](std::size_t face, double, std::size_t k) {
-      visit(point_of(static_cast<Index>(face), k), static_cast<Index>(face));
+      visit(point_on_face(mesh_, static_cast<Index>(face), k), static_cast<Index>(face));
     });
   }
 
@@ -137,15 +132,6 @@ class Samples {
       edge_until_.push_back(length(mesh_.corner_position(next_corner(corner)) - mesh_.corner_position(corner)));
     }
     length_ = add_up(edge_until_);
-  }
-
-  Vec3 point_of(Index face, std::size_t k) const {
-    const double n = static_cast<double>(k);
-    double u = std::fmod(0.5 + n * 0.7548776662466927, 1.0);
-    double v = std::fmod(0.5 + n * 0.5698402909980532, 1.0);
-    if (u + v > 1) u = 1 - u, v = 1 - v;
-    return mesh_.corner_position(3 * face) * (1 - u - v) + mesh_.corner_position(3 * face + 1) * u +
-           mesh_.corner_position(3 * face + 2) * v;
   }
 
   const Mesh& mesh_;
@@ -240,6 +226,15 @@ Deviation deviation_of_empty(const Mesh& a, const Mesh& b) {
 }
 
 }  // namespace
+
+Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k) {
+  const double n = static_cast<double>(k);
+  double u = std::fmod(0.5 + n * 0.7548776662466927, 1.0);
+  double v = std::fmod(0.5 + n * 0.5698402909980532, 1.0);
+  if (u + v > 1) u = 1 - u, v = 1 - v;
+  return mesh.corner_position(3 * face) * (1 - u - v) + mesh.corner_position(3 * face + 1) * u +
+         mesh.corner_position(3 * face + 2) * v;
+}
 
 Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options) {
   if (a.face_count() == 0 || b.face_count() == 0) return deviation_of_empty(a, b);

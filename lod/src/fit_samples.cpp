@@ -14,7 +14,7 @@ SurfaceSamples::SurfaceSamples(const Mesh& original, std::size_t most) {
     const Vec3 a = original.corner_position(3 * f);
     const Vec3 b = original.corner_position(3 * f + 1);
     const Vec3 c = original.corner_position(3 * f + 2);
-    const double area = 0.5 * length(cross(b - a, c - a));
+    const double area = 0.5 * length(area_vector(original, f));
     all.push_back({(a + b + c) * (1.0 / 3), 0.75 * area});  // the cubic rule of a triangle: ¾ middle, ¼ corners
     for (Index k = 0; k < 3; ++k) vertex_area[original.corner_vertex(3 * f + k)] += area / 12;
   }

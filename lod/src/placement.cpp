@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <numeric>
 
 #include <lodestone/lod/deviation.h>
 
@@ -94,8 +94,7 @@ void Fitting::turn_edges() {
 void Fitting::assemble(SparseSystem& system) const {
   system.clear();
   for (const SurfaceSample& sample : samples_.all()) {
-    const Vec3 a = level_.corner_position(3 * sample.face);
-    const Vec3 normal = normalized(cross(level_.corner_position(3 * sample.face + 1) - a, level_.corner_position(3 * sample.face + 2) - a));
+    const Vec3 normal = normalized(area_vector(level_, sample.face));
     const Symmetric3 metric = Symmetric3::identity(kAlong * sample.weight) +
                               Symmetric3::outer(normal, (1 - kAlong) * sample.weight);
     system.add(&corner_vertex_[3 * std::size_t{sample.face}], sample.weights.data(), 3, sample.position, metric);
@@ -173,33 +172,9 @@ void Fitting::run() {
 
 /// Leaves out vertices and wedges that no face uses.
 Mesh compacted(const Mesh& mesh) {
-  std::vector<Index> vertex_of(mesh.vertex_count(), kNoIndex);
-  std::vector<Index> wedge_of(mesh.wedge_count(), kNoIndex);
-  std::vector<Index> source;
-  Mesh out;
-  for (const Index wedge : mesh.corner_wedge) {
-    if (wedge_of[wedge] == kNoIndex) {
-      Index& vertex = vertex_of[mesh.wedge_vertex[wedge]];
-      if (vertex == kNoIndex) {
-        vertex = static_cast<Index>(out.positions.size());
-        out.positions.push_back(mesh.positions[mesh.wedge_vertex[wedge]]);
-      }
-      wedge_of[wedge] = static_cast<Index>(source.size());
-      out.wedge_vertex.push_back(vertex);
-      source.push_back(wedge);
-    }
-    out.corner_wedge.push_back(wedge_of[wedge]);
-  }
-  out.face_material = mesh.face_material;
-  for (const Attribute& a : mesh.attributes) {
-    Attribute& copy = out.attributes.emplace_back(Attribute{a.name, a.type, a.component_count, a.normalized, {}});
-    const std::size_t bytes = a.element_bytes();
-    for (const Index wedge : source) {
-      const auto begin = a.data.begin() + static_cast<std::ptrdiff_t>(wedge * bytes);
-      copy.data.insert(copy.data.end(), begin, begin + static_cast<std::ptrdiff_t>(bytes));
-    }
-  }
-  return out;
+  std::vector<Index> faces(mesh.face_count());
+  std::iota(faces.begin(), faces.end(), Index{0});
+  return pick_faces(mesh, faces);
 }
 
 }  // namespace

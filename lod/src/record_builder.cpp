@@ -177,17 +177,6 @@ void RecordBuilder::write_errors(ProgressiveMesh& result, const std::vector<floa
   if (count > 0) result.round_begin.push_back(static_cast<Index>(count));
 }
 
-void RecordBuilder::copy_attributes(ProgressiveMesh& result, const Numbering& numbers) const {
-  for (const Attribute& attribute : mesh_->attributes) {
-    Attribute& copy = result.attributes.emplace_back(
-        Attribute{attribute.name, attribute.type, attribute.component_count, attribute.normalized, {}});
-    const std::size_t bytes = attribute.element_bytes();
-    copy.data.resize(bytes * numbers.source_wedge.size());
-    for (std::size_t w = 0; w < numbers.source_wedge.size(); ++w)
-      std::memcpy(&copy.data[w * bytes], &attribute.data[numbers.source_wedge[w] * bytes], bytes);
-  }
-}
-
 ProgressiveMesh RecordBuilder::finish(const std::vector<float>& deviation) {
   ProgressiveMesh result;
   Numbering numbers;
@@ -202,7 +191,8 @@ ProgressiveMesh RecordBuilder::finish(const std::vector<float>& deviation) {
   }
   for (std::size_t g = 0; g < result.groups.size(); ++g) result.groups[g].face_count = numbers.group_face_count[g];
   write_errors(result, deviation);
-  copy_attributes(result, numbers);
+  for (const Attribute& attribute : mesh_->attributes)
+    result.attributes.push_back(pick_elements(attribute, numbers.source_wedge));
   return result;
 }
 

@@ -33,7 +33,6 @@ class RecordBuilder {
   void number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const;
   void write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const;
   void write_errors(ProgressiveMesh& result, const std::vector<float>& deviation) const;
-  void copy_attributes(ProgressiveMesh& result, const Numbering& numbers) const;
 
   const Mesh* mesh_;
   const Connectivity* connectivity_;

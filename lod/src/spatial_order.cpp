@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -55,47 +54,10 @@ std::vector<Index> face_order(const Mesh& mesh) {
   return order;
 }
 
-void copy_attributes(const Mesh& mesh, const std::vector<Index>& source, Mesh& sorted) {
-  for (const Attribute& attribute : mesh.attributes) {
-    Attribute& copy = sorted.attributes.emplace_back(
-        Attribute{attribute.name, attribute.type, attribute.component_count, attribute.normalized, {}});
-    const std::size_t bytes = attribute.element_bytes();
-    copy.data.resize(bytes * source.size());
-    for (std::size_t w = 0; w < source.size(); ++w)
-      std::memcpy(&copy.data[w * bytes], &attribute.data[source[w] * bytes], bytes);
-  }
-}
-
 }  // namespace
 
 Mesh in_spatial_order(const Mesh& mesh, std::vector<Index>& source_vertex) {
-  Mesh sorted;
-  source_vertex.clear();
-  std::vector<Index> vertex_of(mesh.vertex_count(), kNoIndex);
-  std::vector<Index> wedge_of(mesh.wedge_count(), kNoIndex);
-  std::vector<Index> source_wedge;
-  sorted.corner_wedge.reserve(mesh.corner_wedge.size());
-  // Vertices and wedges follow the faces, in order of first use.
-  for (const Index face : face_order(mesh)) {
-    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
-      const Index wedge = mesh.corner_wedge[corner];
-      Index& vertex = vertex_of[mesh.wedge_vertex[wedge]];
-      if (vertex == kNoIndex) {
-        vertex = static_cast<Index>(sorted.positions.size());
-        sorted.positions.push_back(mesh.positions[mesh.wedge_vertex[wedge]]);
-        source_vertex.push_back(mesh.wedge_vertex[wedge]);
-      }
-      if (wedge_of[wedge] == kNoIndex) {
-        wedge_of[wedge] = static_cast<Index>(sorted.wedge_vertex.size());
-        sorted.wedge_vertex.push_back(vertex);
-        source_wedge.push_back(wedge);
-      }
-      sorted.corner_wedge.push_back(wedge_of[wedge]);
-    }
-    if (!mesh.face_material.empty()) sorted.face_material.push_back(mesh.face_material[face]);
-  }
-  copy_attributes(mesh, source_wedge, sorted);
-  return sorted;
+  return pick_faces(mesh, face_order(mesh), &source_vertex);
 }
 
 }  // namespace lodestone::detail

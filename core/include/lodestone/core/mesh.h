@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,15 @@ struct Attribute {
   std::size_t element_bytes() const { return component_bytes(type) * component_count; }
 };
 
+/// Returns what an integer component of value 1 or −1 is stored as where it is normalized; 1 for floats.
+double largest_component(ComponentType type);
+
+/// Returns an attribute's components as floats, element after element; normalized integers in [0, 1] or [−1, 1].
+std::vector<float> attribute_values(const Attribute& attribute);
+
+/// Returns an attribute with some of another's elements, in the order given.
+Attribute pick_elements(const Attribute& attribute, std::span<const Index> elements);
+
 /// An indexed triangle mesh in flat arrays.
 ///
 /// A *vertex* is a position. A *wedge* is one attribute set at a vertex: a vertex on a seam has several. A *corner* is
@@ -62,6 +72,13 @@ struct Box {
 
 /// Returns the bounding box of the vertices that faces use; a box of size 0 at the origin where there are none.
 Box bounding_box(const Mesh& mesh);
+
+/// Returns a face's normal, twice as long as its area.
+Vec3 area_vector(const Mesh& mesh, Index face);
+
+/// Returns some faces as a mesh of their own, in the order given. The vertices and wedges they use are numbered in order
+/// of first use; `source_vertex`, if wanted, gets the vertices' numbers in `mesh`.
+Mesh pick_faces(const Mesh& mesh, std::span<const Index> faces, std::vector<Index>* source_vertex = nullptr);
 
 /// Returns the total area of the faces, in squared mesh units.
 double surface_area(const Mesh& mesh);

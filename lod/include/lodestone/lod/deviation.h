@@ -63,6 +63,10 @@ class SurfaceIndex {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Returns the k-th of a sequence of points that spreads evenly over a face.
+/// Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences (2018): R2.
+Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k);
+
 /// Measures the deviation of two surfaces, both ways. Deterministic. Empty meshes deviate by infinity from others.
 ///
 /// `mean` and `rms` are not area means: to compare with published figures they are over the samples that Metro (Cignoni,
