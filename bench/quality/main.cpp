@@ -111,10 +111,10 @@ void compare_on(const Model& model, const std::vector<Target>& targets, const st
 
 void print_head(const std::vector<std::string>& missing_models) {
   std::puts(
-      "Distances in % of the original's bounding-box diagonal: mean and rms are those of both directions, averaged, max "
-      "is the larger. Normals: mean angle over the original's area. Minimum angle: mean of the faces' smallest. Edges "
-      "of more than two faces and slivers (an angle under 1°): beyond the original's. Flipped: looking away from the "
-      "original. CPU: the simplification alone; lodestone's goes to the base mesh once, for all levels.\n");
+      "Distances in % of the original's bounding-box diagonal: mean and rms are those of both directions, averaged, "
+      "max is the larger. Normals: mean angle over the original's area. Minimum angle: mean of the faces' smallest. "
+      "Edges of more than two faces and slivers (an angle under 1°): beyond the original's. Flipped: looking away "
+      "from the original. CPU: the simplification alone; lodestone's goes to the base mesh once, for all levels.\n");
   std::vector<std::string> missing = missing_simplifiers();
   missing.insert(missing.end(), missing_models.begin(), missing_models.end());
   for (const auto& name : missing) std::printf("Not found: %s.\n", name.c_str());
@@ -173,7 +173,8 @@ int main(int argc, char** argv) {
   app.add_option("--data", options.data, "folder of models, laid out as shared/data");
   app.add_option("--models", options.models, "parts of models' names")->delimiter(',');
   app.add_option("--ratios", options.percents, "percent of the faces")->delimiter(',');
-  app.add_option("--only", options.only, "simplifiers: levels, stream, lt-end, meshopt, openmesh, lt, gh")->delimiter(',');
+  app.add_option("--only", options.only, "simplifiers: levels, stream, lt-end, meshopt, openmesh, vtk-pro, lt, gh, vtk")
+      ->delimiter(',');
   app.add_option("--samples", options.samples, "of a surface, each way, at most");
   app.add_flag("--fast", options.fast, "10 % and 2 % alone, a tenth of the samples");
   app.add_flag("--check", options.check, "measure what the Metro tool measured, and print both");

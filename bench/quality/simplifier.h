@@ -41,6 +41,8 @@ std::vector<Level> run_cgal_lindstrom_turk_end_points(const Mesh& mesh, std::spa
 std::vector<Level> run_cgal_garland_heckbert(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_openmesh(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_meshoptimizer(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_vtk_quadrics(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_vtk_decimate_pro(const Mesh& mesh, std::span<const std::size_t> face_counts);
 
 /// Measures CPU time of this process, all threads together.
 class CpuClock {

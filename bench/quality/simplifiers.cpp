@@ -25,9 +25,15 @@ std::vector<Simplifier> simplifiers() {
 #ifdef LODESTONE_BENCH_OPENMESH
       {"openmesh", "OpenMesh, quadrics", true, run_openmesh},
 #endif
+#ifdef LODESTONE_BENCH_VTK
+      {"vtk-pro", "VTK, DecimatePro", true, run_vtk_decimate_pro},
+#endif
       {"lt", "CGAL Lindstrom–Turk", false, run_cgal_lindstrom_turk},
 #ifdef LODESTONE_BENCH_EIGEN
       {"gh", "CGAL Garland–Heckbert", false, run_cgal_garland_heckbert},
+#endif
+#ifdef LODESTONE_BENCH_VTK
+      {"vtk", "VTK, quadrics", false, run_vtk_quadrics},
 #endif
   };
 }
@@ -39,6 +45,9 @@ std::vector<std::string> missing_simplifiers() {
 #endif
 #ifndef LODESTONE_BENCH_EIGEN
   missing.emplace_back("CGAL Garland–Heckbert (libeigen3-dev)");
+#endif
+#ifndef LODESTONE_BENCH_VTK
+  missing.emplace_back("VTK (libvtk9-dev, or ./run quality --with-vtk)");
 #endif
   return missing;
 }
