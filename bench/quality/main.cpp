@@ -121,6 +121,17 @@ void print_head(const std::vector<std::string>& missing_models) {
   if (!missing.empty()) std::puts("");
 }
 
+int write_figures(const std::string& path, const std::string& table) {
+  if (table.empty()) {
+    std::fprintf(stderr, "%s: left as it is: none of these models has published counts\n", path.c_str());
+    return 1;
+  }
+  if (replace_between_markers(path, table)) return 0;
+  std::fprintf(stderr, "%s: not writable, or no lines '<!-- quality: begin -->' and '<!-- quality: end -->'\n",
+               path.c_str());
+  return 4;
+}
+
 int compare(const Options& options, const Models& models, const std::vector<double>& ratios) {
   const std::vector<Simplifier> tools = chosen_simplifiers(options);
   print_head(models.missing);
@@ -132,9 +143,7 @@ int compare(const Options& options, const Models& models, const std::vector<doub
   }
   if (rows.empty()) return 0;
   std::fputs((summary_table(rows, tools, ratios) + standing_table(rows)).c_str(), stdout);
-  if (options.readme.empty() || replace_between_markers(options.readme, figures_table(rows, tools))) return 0;
-  std::fprintf(stderr, "%s: no lines '<!-- quality: begin -->' and '<!-- quality: end -->'\n", options.readme.c_str());
-  return 4;
+  return options.readme.empty() ? 0 : write_figures(options.readme, figures_table(rows, tools));
 }
 
 int run_grid_of(const Options& options, const Models& models, const std::vector<double>& ratios) {

@@ -61,7 +61,43 @@ std::string judged(double value, double limit, double goal) {
   return relative > goal ? "**" + relative_text(relative) + "**" : relative_text(relative);
 }
 
+/// The keys of the rows' peers, all or those that keep vertices where they were.
+std::vector<std::string> peer_keys(const std::vector<Row>& rows, bool subset_alone) {
+  std::vector<std::string> keys;
+  for (const Row& row : rows) {
+    const Simplifier& s = *row.simplifier;
+    const bool wanted = s.key != "levels" && s.key != "stream" && (s.subset || !subset_alone);
+    if (wanted && std::find(keys.begin(), keys.end(), s.key) == keys.end()) keys.push_back(s.key);
+  }
+  return keys;
+}
+
 std::string count_text(std::size_t value) { return value == 0 ? "0" : "**" + std::to_string(value) + "**"; }
+
+/// One row for each published count.
+std::vector<const Row*> paper_rows(const std::vector<Row>& rows) {
+  std::vector<const Row*> result;
+  for (const Row& row : rows) {
+    if (row.target.paper && row.simplifier == rows.front().simplifier) result.push_back(&row);
+  }
+  return result;
+}
+
+/// The distances of one simplifier at the target of `column`; the least of the simplifiers of its kind are bold.
+std::string figures_cell(const std::vector<Row>& rows, const Row& column, const Simplifier& simplifier) {
+  const Row* row = find(rows, column.model, column.target.faces, simplifier.key);
+  if (row == nullptr || missed(*row)) return "–";
+  std::string text;
+  for (const auto figure : {&Judgement::mean, &Judgement::rms, &Judgement::maximum}) {
+    const double value = row->judgement.*figure;
+    const bool least = std::none_of(rows.begin(), rows.end(), [&](const Row& other) {
+      return other.model == row->model && other.target.faces == row->target.faces && !missed(other) &&
+             other.simplifier->subset == simplifier.subset && other.judgement.*figure < value;
+    });
+    text += (text.empty() ? "" : " / ") + (least ? "**" + figure_text(value) + "**" : figure_text(value));
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -144,8 +180,8 @@ std::string summary_table(const std::vector<Row>& rows, const std::vector<Simpli
 std::string standing_table(const std::vector<Row>& rows) {
   const std::vector<std::string> kept = {"meshopt", "openmesh"};
   const std::vector<std::string> end_points = {"lt-end"};
-  const std::vector<std::string> subset = {"meshopt", "openmesh", "lt-end"};
-  const std::vector<std::string> peers = {"meshopt", "openmesh", "lt-end", "lt", "gh"};
+  const std::vector<std::string> subset = peer_keys(rows, true);
+  const std::vector<std::string> peers = peer_keys(rows, false);
   std::ostringstream out;
   out << "### Where the stream stands\n\nAs multiples of the best of the peers named; bold: above the goal, which is "
          "0.75 "
@@ -180,26 +216,24 @@ std::string standing_table(const std::vector<Row>& rows) {
 }
 
 std::string figures_table(const std::vector<Row>& rows, const std::vector<Simplifier>& simplifiers) {
+  const std::vector<const Row*> columns = paper_rows(rows);
+  if (columns.empty()) return {};
   std::ostringstream out;
   out << "| mean / rms / max";
-  std::vector<const Row*> columns;
-  for (const Row& row : rows) {
-    if (row.target.paper && row.simplifier == rows.front().simplifier) columns.push_back(&row);
-  }
   for (const Row* column : columns) out << " | " << column->model << "@" << column->target.faces;
   out << " |\n|---";
   for (std::size_t i = 0; i < columns.size(); ++i) out << "|---";
   out << "|\n";
-  for (const Simplifier& simplifier : simplifiers) {
-    out << "| " << simplifier.name;
-    for (const Row* column : columns) {
-      const Row* row = find(rows, column->model, column->target.faces, simplifier.key);
-      out << " | ";
-      if (row == nullptr) continue;
-      out << figure_text(row->judgement.mean) << " / " << figure_text(row->judgement.rms) << " / "
-          << figure_text(row->judgement.maximum);
-    }
+  for (const bool subset : {false, true}) {
+    out << (subset ? "| *vertices stay where they were*" : "| *vertices are placed anew*");
+    for (std::size_t i = 0; i < columns.size(); ++i) out << " |";
     out << " |\n";
+    for (const Simplifier& simplifier : simplifiers) {
+      if (simplifier.subset != subset) continue;
+      out << "| " << simplifier.name;
+      for (const Row* column : columns) out << " | " << figures_cell(rows, *column, simplifier);
+      out << " |\n";
+    }
   }
   return out.str();
 }
@@ -213,8 +247,10 @@ bool replace_between_markers(const std::string& path, const std::string& text) {
   const auto to = all.find(end);
   if (from == std::string::npos || to == std::string::npos || to < from) return false;
   all.replace(from + begin.size(), to - from - begin.size(), text);
-  std::ofstream(path) << all;
-  return true;
+  std::ofstream out(path);
+  out << all;
+  out.close();
+  return out.good();
 }
 
 std::string figure_text(double value) {

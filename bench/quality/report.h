@@ -40,11 +40,11 @@ std::string summary_table(const std::vector<Row>& rows, const std::vector<Simpli
                           const std::vector<double>& ratios);
 /// The stream against the best peers, target by target; what misses is bold.
 std::string standing_table(const std::vector<Row>& rows);
-/// The published counts alone, for the README.
+/// The published counts alone, for the README; nothing where no row is of one.
 std::string figures_table(const std::vector<Row>& rows, const std::vector<Simplifier>& simplifiers);
 
 /// Puts `text` between the lines `<!-- quality: begin -->` and `<!-- quality: end -->` of a file; returns whether it
-/// has them.
+/// has them and was written.
 bool replace_between_markers(const std::string& path, const std::string& text);
 
 /// Three significant digits.
