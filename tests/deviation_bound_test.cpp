@@ -32,7 +32,7 @@ constexpr std::size_t kMostCorners = 3000;               // of a shape that is r
 constexpr std::size_t kQueries = kReduced ? 300 : 1500;  // of the referee, each way, beside those at vertices
 
 // Distances between points whose coordinates are as large as 1 are rounded by some 2⁻⁵³, more where faces are needles:
-// a surface measured against itself can seem to be 2e-14 away. That goes for the referee as for what the bound adds up.
+// a surface measured against itself can seem to be 3e-14 away. That goes for the referee as for what the bound adds up.
 // A float's last digit is five orders of magnitude larger than this.
 constexpr double kRounding = 1e-12;
 
