@@ -7,6 +7,8 @@
 
 #include <lodestone/io/asset.h>
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/lod/attribute_deviation.h>
+#include <lodestone/lod/deviation.h>
 
 #include "support/data.h"
 #include "support/gltf_file.h"
@@ -321,6 +323,56 @@ TEST_CASE("instances share their levels' data, and the largest scale counts") {
   const Asset read_back = checked(read_asset_bytes(asset.glb));
   CHECK(read_back.levels[0].mesh.face_count() == 16);
   CHECK(read_back.levels[1].maximum_deviation == test::Approx(0.03));
+}
+
+TEST_CASE("levels are measured as clients decode them, attributes and all") {
+  constexpr std::size_t kSamples = 1000;
+  DeviationOptions few;
+  few.sample_count = kSamples;
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const auto assembled = assemble(shape.soup);
+    if (assembled->mesh.face_count() == 0) continue;
+    const Scene scene = checked(Scene::from_mesh({assembled->mesh, {}, {}}, "shape"));
+    AssetOptions options;
+    options.draco_position_bits = 12;
+    std::vector<AssetLevel> measured;
+    options.measure = [&](std::span<std::vector<AssetLevel>> meshes) {
+      REQUIRE(meshes.size() == 1);
+      measured = meshes[0];
+      for (AssetLevel& level : meshes[0]) level.deviation.backward.maximum = 0.25;
+    };
+    const EncodedAsset asset = checked(encode_scene(scene, halved(scene), options));
+    const Asset read_back = checked(read_asset_bytes(asset.glb));
+    REQUIRE(measured.size() == 2);
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      const Mesh& decoded = read_back.levels[i].mesh;
+      CHECK(measured[i].mesh.face_count() == decoded.face_count());
+      CHECK(measure_deviation(measured[i].mesh, decoded, few).maximum() < 1e-6);
+      for (const AttributeDeviation& a : measure_attributes(measured[i].mesh, decoded, kSamples)) CHECK(a.mean < 1e-6);
+      CHECK(read_back.levels[i].maximum_deviation == 0.25);
+    }
+    options.draco = false;
+    CHECK(encode_scene(scene, halved(scene), options));
+    CHECK(measured[0].mesh.positions == scene.meshes()[0].mesh.positions);
+  }
+}
+
+TEST_CASE("what quantisation leaves no area is measured all the same") {
+  // Beside a large shape on one grid, a small one becomes a point.
+  GltfMaker maker = strips(1, 4);
+  const Scene scene = read(maker);
+  AssetOptions options;
+  options.draco_position_bits = 1;
+  Mesh small = scene.meshes()[0].mesh;
+  for (Vec3f& p : small.positions) p = {p.x * 1e-3F, p.y * 1e-3F, p.z * 1e-3F};
+  std::vector<LeveledMesh> meshes = halved(scene);
+  meshes[0].levels[1].mesh = small;
+  Mesh decoded;
+  options.measure = [&](std::span<std::vector<AssetLevel>> levels) { decoded = levels[0][1].mesh; };
+  REQUIRE(encode_scene(scene, meshes, options));
+  CHECK(decoded.face_count() > 0);
+  CHECK(bounding_box(decoded).diagonal() == 0);
 }
 
 TEST_CASE("levels that repeat the one before share its data, in meshes of their own") {

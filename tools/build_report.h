@@ -29,7 +29,7 @@ struct BuildReport {
   struct Level {
     std::size_t face_count = 0;    ///< drawn
     std::size_t vertex_count = 0;  ///< drawn
-    Deviation deviation;           ///< measured, whole scene to level and back, world units; before quantisation
+    Deviation deviation;           ///< measured, whole scene to level as decoded and back, world units
     double deviation_bound = 0;    ///< what the streams promise for the level, world units
     double curvature_error = 0;    ///< the largest of all meshes, in the metric's own unit
     std::uint64_t bytes = 0;
@@ -50,9 +50,9 @@ struct BuildReport {
     struct Level {
       std::size_t face_count = 0;
       std::size_t vertex_count = 0;
-      Deviation deviation;
+      Deviation deviation;  ///< of the level as decoded
       double deviation_bound = 0;
-      std::vector<AttributeDeviation> attributes;
+      std::vector<AttributeDeviation> attributes;  ///< of the level as decoded; none of a whole mesh that is as it was
     };
     std::string name;
     std::size_t instance_count = 0;

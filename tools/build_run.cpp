@@ -85,13 +85,16 @@ DeviationOptions level_measure() {
   return options;
 }
 
+/// Whether the two surfaces are nowhere farther from each other than `limit`, in mesh units.
+bool lies_within(const Mesh& a, const Mesh& b, double limit) {
+  return measure_maximum(a, SurfaceIndex(a), b, level_measure(), limit).maximum_bound() <= limit;
+}
+
 /// One level of one mesh, in the making.
 struct LevelJob {
   std::size_t mesh = 0;
   std::size_t level = 0;
-  bool repeats = false;  ///< it is the level before
   AssetLevel made;
-  std::vector<AttributeDeviation> attributes;
 };
 
 /// One run of the command: its steps in order, and what they hand on to each other.
@@ -113,13 +116,18 @@ class BuildRun {
   void report_simplified(const SceneMesh& mesh, const SimplifyResult& result);
   std::vector<double> world_charges(const SimplifyResult& result, double scale) const;
   std::vector<SceneChoice> choose_levels() const;
+  bool repeats(std::size_t mesh, std::size_t level) const;
+  bool is_whole(std::size_t mesh, std::size_t level) const;
   void make_levels();
-  void make_mesh_level(LevelJob& job, Index position, const LevelTarget& target) const;
-  void take_mesh_level(LevelJob&& job, const SceneChoice& choice);
-  void report_level(std::size_t number, const SceneChoice& choice);
+  void make_mesh_level(LevelJob& job) const;
+  void take_mesh_level(LevelJob&& job);
+  void report_level(const SceneChoice& choice);
   bool report_missed_targets() const;
   Result<void> encode_streams();
-  Result<std::vector<EncodedAsset>> encode() const;
+  Result<std::vector<EncodedAsset>> encode();
+  void measure_levels(std::span<std::vector<AssetLevel>> meshes, std::size_t first);
+  void measure_mesh_level(std::size_t mesh, std::size_t number, const Mesh& level);
+  void report_deviation(std::size_t number);
   Result<void> write();
   Result<std::string> page() const;
   std::vector<ScenePart> parts() const;
@@ -133,7 +141,9 @@ class BuildRun {
   BuildSettings settings_;
   std::optional<Scene> scene_;
   std::vector<SimplifyResult> simplified_;  // by mesh, as the next
+  std::vector<SceneChoice> choices_;        // by level
   std::vector<LeveledMesh> levels_;
+  std::vector<LeveledMesh> decoded_;  // the levels as the files have them; for the page
   BuildReport report_;
 };
 
@@ -263,23 +273,21 @@ std::vector<double> BuildRun::world_charges(const SimplifyResult& result, double
 
 void BuildRun::make_levels() {
   progress_.start("making levels");
-  const std::vector<SceneChoice> choices = choose_levels();
+  choices_ = choose_levels();
   levels_.resize(simplified_.size());
   std::vector<LevelJob> jobs;
   for (std::size_t mesh = 0; mesh < simplified_.size(); ++mesh)
-    for (std::size_t level = 0; level < choices.size(); ++level)
-      jobs.push_back({mesh, level, level > 0 && choices[level].positions[mesh] == choices[level - 1].positions[mesh], {}, {}});
+    for (std::size_t level = 0; level < choices_.size(); ++level) jobs.push_back({mesh, level, {}});
   SharedProgress shared(progress_);
   for (std::size_t i = 0; i < jobs.size(); ++i) shared.add_part(1);
   for_each_in_parallel(jobs.size(), [&](std::size_t i) {
-    LevelJob& job = jobs[i];
-    if (!job.repeats) make_mesh_level(job, choices[job.level].positions[job.mesh], choices[job.level].target);
+    if (!repeats(jobs[i].mesh, jobs[i].level)) make_mesh_level(jobs[i]);
     shared.update(i, 1);
   });
   for (std::size_t i = 0; i < jobs.size(); ++i)
-    if (jobs[i].repeats) jobs[i].made = jobs[i - 1].made, jobs[i].attributes = jobs[i - 1].attributes;
-  for (LevelJob& job : jobs) take_mesh_level(std::move(job), choices[job.level]);
-  for (std::size_t level = 0; level < choices.size(); ++level) report_level(level, choices[level]);
+    if (repeats(jobs[i].mesh, jobs[i].level)) jobs[i].made = jobs[i - 1].made;
+  for (LevelJob& job : jobs) take_mesh_level(std::move(job));
+  for (const SceneChoice& choice : choices_) report_level(choice);
   report_.timings_ms.levels = stopwatch_.lap_ms();
 }
 
@@ -304,36 +312,43 @@ std::vector<SceneChoice> BuildRun::choose_levels() const {
   return choices;
 }
 
-void BuildRun::report_level(std::size_t number, const SceneChoice& choice) {
+/// Whether a mesh's level is the one before.
+bool BuildRun::repeats(std::size_t mesh, std::size_t level) const {
+  return level > 0 && choices_[level].positions[mesh] == choices_[level - 1].positions[mesh];
+}
+
+bool BuildRun::is_whole(std::size_t mesh, std::size_t level) const {
+  return choices_[level].positions[mesh] == simplified_[mesh].mesh.record_count();
+}
+
+void BuildRun::report_level(const SceneChoice& choice) {
   BuildReport::Level entry;
-  DeviationTotal deviation;
+  const std::size_t number = report_.levels.size();
   for (std::size_t i = 0; i < simplified_.size(); ++i) {
     const SceneMesh& mesh = scene_->meshes()[i];
-    const AssetLevel& level = levels_[i].levels[number];
     const BuildReport::MeshPart::Level& part = report_.meshes[i].levels[number];
     entry.face_count += part.face_count * mesh.instance_count;
     entry.vertex_count += part.vertex_count * mesh.instance_count;
     entry.deviation_bound = std::max(entry.deviation_bound, part.deviation_bound * mesh.scale);
-    entry.curvature_error = std::max(entry.curvature_error, level.curvature_error);
-    deviation.add(level.deviation, mesh.scale, mesh.area);
+    entry.curvature_error = std::max(entry.curvature_error, levels_[i].levels[number].curvature_error);
   }
-  entry.deviation = deviation.result();
   if (number > 0) entry.target = choice.target;
   entry.met = choice.met;
   entry.stopped_by = choice.stopped_by;
   report_.levels.push_back(std::move(entry));
 }
 
-void BuildRun::take_mesh_level(LevelJob&& job, const SceneChoice& choice) {
+void BuildRun::take_mesh_level(LevelJob&& job) {
+  const SceneChoice& choice = choices_[job.level];
   job.made.stop_reason = choice.stopped_by;
   const float bound = simplified_[job.mesh].mesh.deviation[choice.positions[job.mesh]];
-  report_.meshes[job.mesh].levels.push_back({job.made.mesh.face_count(), job.made.mesh.vertex_count(),
-                                             job.made.deviation, bound, std::move(job.attributes)});
+  report_.meshes[job.mesh].levels.push_back({job.made.mesh.face_count(), job.made.mesh.vertex_count(), {}, bound, {}});
   levels_[job.mesh].levels.push_back(std::move(job.made));
 }
 
 /// Extracts a level and fits it to the original, unless an error was asked for that only the stream's level keeps to.
-void BuildRun::make_mesh_level(LevelJob& job, Index position, const LevelTarget& target) const {
+void BuildRun::make_mesh_level(LevelJob& job) const {
+  const Index position = choices_[job.level].positions[job.mesh];
   const SceneMesh& source = scene_->meshes()[job.mesh];
   const ProgressiveMesh& progressive = simplified_[job.mesh].mesh;
   AssetLevel& level = job.made;
@@ -341,19 +356,58 @@ void BuildRun::make_mesh_level(LevelJob& job, Index position, const LevelTarget&
   Cursor cursor(progressive);
   cursor.seek(position);
   level.mesh = extract_level(progressive, cursor);
-  if (position == progressive.record_count()) return;
-  const auto measured = [&](const Mesh& m) { return measure_deviation(source.mesh, m, level_measure()); };
-  const Mesh subset = level.mesh;
   // Vertices of skinned and morphed meshes take their weights and targets with them, so those stay where they are.
   const bool fits = options_.placement == "optimised" && !source.skinned && !source.has_targets;
-  if (fits) level.mesh = optimise_placement(source.mesh, subset);
-  level.deviation = measured(level.mesh);
+  if (!fits || is_whole(job.mesh, job.level)) return;
+  Mesh fitted = optimise_placement(source.mesh, level.mesh);
   const double bound = static_cast<double>(progressive.deviation[position]);
-  if (fits && target.kind == TargetKind::Error && level.deviation.maximum_bound() > bound) {
-    level.mesh = subset;
-    level.deviation = measured(subset);
+  const bool is_limited = choices_[job.level].target.kind == TargetKind::Error;
+  if (!is_limited || lies_within(source.mesh, fitted, bound)) level.mesh = std::move(fitted);
+}
+
+/// Measures levels as a file has them; the first of each mesh is number `first`.
+void BuildRun::measure_levels(std::span<std::vector<AssetLevel>> meshes, std::size_t first) {
+  report_.timings_ms.write += stopwatch_.lap_ms();
+  progress_.start("measuring levels");
+  SharedProgress shared(progress_);
+  const std::size_t count = meshes.front().size();
+  for (std::size_t i = 0; i < meshes.size() * count; ++i) shared.add_part(1);
+  for_each_in_parallel(meshes.size() * count, [&](std::size_t i) {
+    const std::size_t mesh = i / count, level = i % count;
+    if (level == 0 || !repeats(mesh, first + level)) measure_mesh_level(mesh, first + level, meshes[mesh][level].mesh);
+    shared.update(i, 1);
+  });
+  decoded_.resize(meshes.size());
+  for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
+    std::vector<BuildReport::MeshPart::Level>& reported = report_.meshes[mesh].levels;
+    for (std::size_t level = 0; level < count; ++level) {
+      const std::size_t number = first + level;
+      if (level > 0 && repeats(mesh, number)) reported[number] = reported[number - 1];
+      meshes[mesh][level].deviation = reported[number].deviation;
+      if (options_.html) decoded_[mesh].levels.push_back(meshes[mesh][level]);
+    }
   }
-  job.attributes = measure_attributes(source.mesh, level.mesh);
+  for (std::size_t level = 0; level < count; ++level) report_deviation(first + level);
+  report_.timings_ms.levels += stopwatch_.lap_ms();
+  progress_.start("writing");
+}
+
+/// Measures one level of one mesh, unless the file has the whole mesh as it was.
+void BuildRun::measure_mesh_level(std::size_t mesh, std::size_t number, const Mesh& level) {
+  if (options_.no_draco && is_whole(mesh, number)) return;
+  const Mesh& whole = scene_->meshes()[mesh].mesh;
+  BuildReport::MeshPart::Level& reported = report_.meshes[mesh].levels[number];
+  reported.deviation = measure_deviation(whole, level, level_measure());
+  reported.attributes = measure_attributes(whole, level);
+}
+
+void BuildRun::report_deviation(std::size_t number) {
+  DeviationTotal total;
+  for (std::size_t i = 0; i < report_.meshes.size(); ++i) {
+    const SceneMesh& mesh = scene_->meshes()[i];
+    total.add(report_.meshes[i].levels[number].deviation, mesh.scale, mesh.area);
+  }
+  report_.levels[number].deviation = total.result();
 }
 
 /// Says which levels have more faces than asked for, and why; returns whether there are any.
@@ -395,13 +449,14 @@ Result<void> BuildRun::encode_streams() {
   return {};
 }
 
-Result<std::vector<EncodedAsset>> BuildRun::encode() const {
+Result<std::vector<EncodedAsset>> BuildRun::encode() {
   AssetOptions options;
   options.draco = !options_.no_draco;
   options.draco_position_bits = options_.position_bits;
   std::vector<EncodedAsset> assets;
   const std::size_t file_count = has_file_per_level(options_) ? report_.levels.size() : 1;
   for (std::size_t i = 0; i < file_count; ++i) {
+    options.measure = [&](std::span<std::vector<AssetLevel>> meshes) { measure_levels(meshes, i); };
     Result<EncodedAsset> asset = has_file_per_level(options_) ? encode_scene_level(*scene_, levels_, i, options)
                                                               : encode_scene(*scene_, levels_, options);
     if (!asset) return tl::unexpected(asset.error());
@@ -417,7 +472,7 @@ Result<void> BuildRun::write() {
   if (!assets) return tl::unexpected(assets.error());
   report_layouts(*assets);
   list_files(options_, *assets, report_);
-  report_.timings_ms.write = stopwatch_.lap_ms();
+  report_.timings_ms.write += stopwatch_.lap_ms();
   const Result<std::string> html = page();
   if (!html) return tl::unexpected(html.error());
   const Result<void> done = write_outputs(options_, *assets, report_, *html);
@@ -428,7 +483,7 @@ Result<void> BuildRun::write() {
 /// Returns the page of --html; nothing without it.
 Result<std::string> BuildRun::page() const {
   if (!options_.html) return std::string();
-  return build_page(report_, *scene_, levels_, wants_streams() ? parts() : std::vector<ScenePart>());
+  return build_page(report_, *scene_, decoded_, wants_streams() ? parts() : std::vector<ScenePart>());
 }
 
 void BuildRun::report_layouts(std::span<const EncodedAsset> assets) {

@@ -76,17 +76,6 @@ void append_primitive(const Primitive& primitive, JoinedMesh& joined, TriangleSo
                             static_cast<Index>(primitive.number));
 }
 
-void complete_attributes(const MeshSource& source, TriangleSoup& soup) {
-  soup.attributes.resize(source.columns.size());
-  for (std::size_t i = 0; i < source.columns.size(); ++i) {
-    std::vector<std::byte> data = std::move(soup.attributes[i].data);
-    soup.attributes[i] = source.columns[i].layout;
-    data.resize(soup.positions.size() * soup.attributes[i].element_bytes());
-    soup.attributes[i].data = std::move(data);
-  }
-  if (source.primitives.size() <= 1) soup.face_material.clear();
-}
-
 /// Joined, every point has the attributes of all primitives: many small primitives could ask for any amount.
 Result<void> check_size(const GltfDocument& document, std::span<const Primitive> primitives, std::size_t mesh) {
   std::size_t points = 0, bytes_per_point = sizeof(Vec3f);
@@ -119,6 +108,17 @@ std::string material_name(const GltfDocument& document, const Json& primitive) {
 }
 
 }  // namespace
+
+void complete_attributes(const MeshSource& source, TriangleSoup& soup) {
+  soup.attributes.resize(source.columns.size());
+  for (std::size_t i = 0; i < source.columns.size(); ++i) {
+    std::vector<std::byte> data = std::move(soup.attributes[i].data);
+    soup.attributes[i] = source.columns[i].layout;
+    data.resize(soup.positions.size() * soup.attributes[i].element_bytes());
+    soup.attributes[i].data = std::move(data);
+  }
+  if (source.primitives.size() <= 1) soup.face_material.clear();
+}
 
 Result<std::optional<JoinedMesh>> join_primitives(const GltfDocument& document, std::size_t mesh) {
   PrimitiveReader reader(document, PrimitiveContent::Whole);

@@ -20,6 +20,10 @@ struct JoinedMesh {
 /// Errors: Malformed, Unsupported; LimitExceeded where the attributes of all primitives together are out of proportion.
 Result<std::optional<JoinedMesh>> join_primitives(const GltfDocument& document, std::size_t mesh);
 
+/// Gives a soup all of the source's attributes, zero for points that lack them. Pre: what there is of a column's data
+/// stands at its number and begins with the first point.
+void complete_attributes(const MeshSource& source, TriangleSoup& soup);
+
 /// Describes a mesh that is no document's: every primitive has all attributes that glTF has a place for.
 MeshSource source_of(const Mesh& mesh, std::size_t primitive_count);
 

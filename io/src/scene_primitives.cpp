@@ -1,12 +1,16 @@
 #include "scene_primitives.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
+#include <numeric>
 
+#include "bytes.h"
 #include "draco_decode.h"
 #include "gltf_attribute.h"
 #include "gltf_mesh_writer.h"
 #include "scene_buffers.h"
+#include "scene_mesh.h"
 #include "text.h"
 #include "try.h"
 
@@ -22,6 +26,28 @@ struct PrimitiveGeometry {
   Json targets;  ///< null for none
   Json draco;    ///< the extension's object; null for none
 };
+
+/// What a client gets out of Draco data, every point a vertex: positions and faces, no attributes.
+Mesh decoded_surface(const DracoGeometry& decoded) {
+  Mesh mesh;
+  mesh.positions.resize(decoded.point_count);
+  std::memcpy(mesh.positions.data(), decoded.attributes[0].bytes.data(), decoded.attributes[0].bytes.size());
+  mesh.wedge_vertex.resize(decoded.point_count);
+  std::iota(mesh.wedge_vertex.begin(), mesh.wedge_vertex.end(), Index{0});
+  mesh.corner_wedge = decoded.indices;
+  return mesh;
+}
+
+/// Joins what is equal, as readers do. Faces that have lost their area go, unless there are no others: something so
+/// small still is somewhere.
+Result<Mesh> joined(const TriangleSoup& soup) {
+  LODESTONE_TRY(AssembledMesh assembled, assemble(soup));
+  if (assembled.mesh.face_count() > 0) return std::move(assembled.mesh);
+  Mesh mesh{soup.positions, std::vector<Index>(soup.positions.size()), soup.indices, soup.face_material,
+            soup.attributes};
+  std::iota(mesh.wedge_vertex.begin(), mesh.wedge_vertex.end(), Index{0});
+  return mesh;
+}
 
 /// Adds the accessors of a level's primitives, one primitive or one level at a time.
 class GeometryWriter {
@@ -43,6 +69,13 @@ class GeometryWriter {
       }
     }
     return geometry;
+  }
+
+  /// Returns what clients get of the level. Pre: it is written, with `measure` set.
+  Result<Mesh> decoded() {
+    if (!options_.draco) return *level_.mesh;
+    complete_attributes(source_, decoded_);
+    return joined(decoded_);
   }
 
  private:
@@ -79,6 +112,7 @@ class GeometryWriter {
     count(mesh.face_count(), mesh.wedge_count());
     PrimitiveGeometry geometry = write_vertices(primitive, mesh);
     geometry.indices = add_indices(builder_, mesh.corner_wedge, mesh.wedge_count());
+    if (options_.measure) note_decoded(primitive, group.material, mesh);
     return geometry;
   }
 
@@ -136,7 +170,18 @@ class GeometryWriter {
     if (primitive.target_count > 0 && decoded.indices != mesh.corner_wedge) return write_plain(primitive, group);
     PrimitiveGeometry geometry = describe_draco(primitive, encoded, decoded);
     geometry.targets = write_targets(primitive, mesh);
+    if (options_.measure) note_decoded(primitive, group.material, decoded_mesh(primitive, decoded, mesh));
     return geometry;
+  }
+
+  /// Returns what a client gets of a primitive: targets as they were, the rest out of Draco data.
+  Mesh decoded_mesh(const SourcePrimitive& primitive, const DracoGeometry& decoded, const Mesh& encoded) const {
+    Mesh mesh = decoded_surface(decoded);
+    mesh.attributes = encoded.attributes;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < primitive.columns.size(); ++i)
+      if (!source_.columns[primitive.columns[i]].target) mesh.attributes[i].data = decoded.attributes[++next].bytes;
+    return mesh;
   }
 
   PrimitiveGeometry describe_draco(const SourcePrimitive& primitive, const DracoPrimitive& encoded,
@@ -161,6 +206,20 @@ class GeometryWriter {
     return geometry;
   }
 
+  /// Notes what a client gets of a primitive. Pre: the mesh has the primitive's columns, in their order.
+  void note_decoded(const SourcePrimitive& primitive, Index material, const Mesh& mesh) {
+    const std::size_t first = decoded_.positions.size();
+    for (const Index vertex : mesh.wedge_vertex) decoded_.positions.push_back(mesh.positions[vertex]);
+    for (const Index wedge : mesh.corner_wedge) decoded_.indices.push_back(static_cast<Index>(first + wedge));
+    decoded_.face_material.insert(decoded_.face_material.end(), mesh.face_count(), material);
+    decoded_.attributes.resize(source_.columns.size());
+    for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
+      std::vector<std::byte>& data = decoded_.attributes[primitive.columns[i]].data;
+      data.resize(first * mesh.attributes[i].element_bytes());
+      append_bytes(data, mesh.attributes[i].data);
+    }
+  }
+
   void count(std::size_t faces, std::size_t vertices) {
     written_.face_count += faces;
     written_.vertex_count += vertices;
@@ -172,6 +231,7 @@ class GeometryWriter {
   const QuantizationGrids& grids_;
   const AssetOptions& options_;
   WrittenLevel& written_;
+  TriangleSoup decoded_;  // only with options_.measure and Draco
 };
 
 /// Keeps all of a primitive but its geometry.
@@ -224,7 +284,11 @@ Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, c
                                  const AssetOptions& options) {
   WrittenLevel written;
   const std::uint64_t begin = (builder.binary_bytes() + 3) / 4 * 4;
-  LODESTONE_TRY(const auto geometry, GeometryWriter(builder, source, level, grids, options, written).write());
+  GeometryWriter writer(builder, source, level, grids, options, written);
+  LODESTONE_TRY(const auto geometry, writer.write());
+  if (options.measure) {
+    LODESTONE_TRY(written.decoded, writer.decoded());
+  }
   written.byte_count = std::max(begin, builder.binary_bytes()) - begin;
   const Json& primitives = source_mesh.at("primitives");
   for (std::size_t i = 0; i < primitives.size(); ++i) {

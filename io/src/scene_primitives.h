@@ -29,6 +29,7 @@ struct WrittenLevel {
   std::uint64_t face_count = 0;
   std::uint64_t vertex_count = 0;
   std::uint64_t byte_count = 0;  ///< of its geometry
+  Mesh decoded;                  ///< as clients get it, with the source's columns; only where `measure` will see it
 };
 
 /// Writes a level's geometry and describes it by `source_mesh`, the mesh's object in the document: primitives keep

@@ -91,6 +91,7 @@ class SceneWriter {
       LODESTONE_CHECK(copy_kept_views(impl_.document, plan_, builder_));
       embed_images(impl_.images, builder_);
     }
+    if (options_.measure) measure_levels();
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_finest(mesh);
     if (with_streams_)
       for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_stream(mesh);
@@ -104,6 +105,12 @@ class SceneWriter {
  private:
   const AssetLevel& level_of(std::size_t mesh, std::size_t level) const {
     return meshes_[mesh].levels[range_.first + level];
+  }
+
+  /// A mesh's levels with the numbers that the file states.
+  std::span<const AssetLevel> stated_levels(std::size_t mesh) const {
+    if (options_.measure) return measured_[mesh];
+    return std::span(meshes_[mesh].levels).subspan(range_.first, range_.count);
   }
 
   Result<void> prepare() {
@@ -147,6 +154,18 @@ class SceneWriter {
     layout.byte_offset = begin;
     layout.byte_length = std::max(begin, builder_.binary_bytes()) - begin;
     return {};
+  }
+
+  void measure_levels() {
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
+      measured_.emplace_back();
+      for (std::size_t level = 0; level < range_.count; ++level) {
+        const AssetLevel& given = level_of(mesh, level);
+        measured_.back().push_back(
+            {std::move(written_[mesh][level].decoded), given.deviation, given.curvature_error, given.stop_reason});
+      }
+    }
+    options_.measure(measured_);
   }
 
   bool shows(std::size_t mesh, std::size_t level) const { return !written_[mesh][level].primitives.empty(); }
@@ -208,8 +227,7 @@ class SceneWriter {
       if (shows(mesh, level)) animated.push_back(first + level);
     }
     finest["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
-    finest["extras"]["MSFT_screencoverage"] =
-        coverage_of_levels(std::span(meshes_[mesh].levels).subspan(range_.first, range_.count));
+    finest["extras"]["MSFT_screencoverage"] = coverage_of_levels(stated_levels(mesh));
     builder_.add("nodes", finest);
     for (std::size_t level = 1; level < range_.count; ++level) add_lower_node(mesh, level, name, finest);
     builder_.at("nodes", node)["children"].push_back(first);
@@ -237,8 +255,8 @@ class SceneWriter {
     if (options_.draco) position_step = grids_[mesh].position.step();
     Json node;
     node["name"] = text(name, "_LOD", level);
-    node["extras"]["lodestone"] = level_numbers(level_of(mesh, level), written_[mesh][level], scene_.meshes()[mesh],
-                                                impl_.sources[mesh].nodes.size(), position_step);
+    node["extras"]["lodestone"] = level_numbers(stated_levels(mesh)[level], written_[mesh][level],
+                                                scene_.meshes()[mesh], impl_.sources[mesh].nodes.size(), position_step);
     return node;
   }
 
@@ -252,7 +270,8 @@ class SceneWriter {
   GlbBuilder builder_;
   std::vector<std::vector<LevelGeometry>> geometry_;  // by mesh and level, as the next
   std::vector<std::vector<WrittenLevel>> written_;
-  std::vector<Json> originals_;  // the meshes as they were in the document
+  std::vector<std::vector<AssetLevel>> measured_;  // as decoded; only with options_.measure
+  std::vector<Json> originals_;                    // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
   AssetLayout layout_;
 };

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,9 +17,9 @@ namespace lodestone {
 /// One discrete level of a mesh.
 struct AssetLevel {
   Mesh mesh;
-  Deviation deviation;         ///< measured against the full mesh
+  Deviation deviation;         ///< measured against the full mesh; goes to extras, as the next
   double curvature_error = 0;  ///< of the metric's own unit
-  std::string stop_reason;     ///< e.g. "faces", "error", "stuck"; goes to extras
+  std::string stop_reason;     ///< e.g. "faces", "error", "stuck"
 };
 
 struct AssetOptions {
@@ -28,6 +29,9 @@ struct AssetOptions {
   int draco_texcoord_bits = 12;
   int draco_generic_bits = 10;
   int draco_compression_level = 7;  ///< 0 to 10
+  /// Called when all geometry is encoded, with each mesh's levels, finest first, as clients will decode them: sets
+  /// their deviations, which the file then states. Unset: it states those given.
+  std::function<void(std::span<std::vector<AssetLevel>> meshes)> measure;
 };
 
 /// What was written, for reports.
