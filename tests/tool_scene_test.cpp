@@ -78,11 +78,11 @@ TEST_CASE("a ratio is shared by the scene: faces go where they keep the error sm
     CHECK(drawn == faces_of(report, 0, level) + 2 * faces_of(report, 1, level));
   }
   // The two end up with errors of one size in the world, not with one share of their faces.
-  const auto bound = [&](std::size_t mesh) {
-    return report["meshes"][mesh]["levels"][2]["deviation_bound"].get<double>() *
+  const auto largest = [&](std::size_t mesh) {
+    return report["meshes"][mesh]["levels"][2]["deviation"]["max"].get<double>() *
            report["meshes"][mesh]["scale"].get<double>();
   };
-  CHECK(std::max(bound(0), bound(1)) < 3 * std::min(bound(0), bound(1)));
+  CHECK(std::max(largest(0), largest(1)) < 3 * std::min(largest(0), largest(1)));
   CHECK(faces_of(report, 0, 2) != faces_of(report, 1, 2));
 }
 

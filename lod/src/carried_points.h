@@ -11,7 +11,7 @@ namespace lodestone::detail {
 ///
 /// Points are the original faces' centroids, from the start, and every vertex from its removal on. A list is kept for
 /// each face slot; points 0 … vertex_count − 1 are vertices, the rest centroids. A point's weight says how many it
-/// stands for.
+/// stands for. Each knows how far it is from the face that carries it.
 class CarriedPoints {
  public:
   explicit CarriedPoints(const Mesh& mesh);
@@ -25,6 +25,8 @@ class CarriedPoints {
     next_[point] = first_[face];
     first_[face] = point;
   }
+  float squared_distance(Index point) const { return squared_distance_[point]; }
+  void set_squared_distance(Index point, float squared_distance) { squared_distance_[point] = squared_distance; }
   float weight(Index point) const { return weight_[point]; }
   void set_weight(Index point, float weight) { weight_[point] = weight; }
   void clear(Index face) { first_[face] = kNoIndex; }
@@ -36,6 +38,7 @@ class CarriedPoints {
   std::vector<Index> first_;
   std::vector<Index> next_;
   std::vector<float> weight_;
+  std::vector<float> squared_distance_;
 };
 
 }  // namespace lodestone::detail

@@ -1,6 +1,7 @@
 // Alternates between looking for each sample's nearest face and moving the vertices, after Hoppe, DeRose, Duchamp,
 // McDonald, Stuetzle: Mesh optimization (SIGGRAPH 1993). Lines are fitted to lines, so that borders and features slide
-// along themselves. What would turn a face over stays where it was.
+// along themselves. What would turn a face over stays where it was, and so does what would take one farther from the
+// original than any was at first: the samples do not see a face that leaves the surface.
 
 #include <lodestone/lod/placement.h>
 
@@ -31,12 +32,14 @@ constexpr double kAlong = 0.05;       // what distance along the surface or line
 constexpr double kLineWeight = 2;     // of lines against surfaces, at equal length
 constexpr double kSettled = 0.985;    // of the sum of squares before: less gain is not worth another iteration
 constexpr int kTurningIterations = 3; // edges are turned in the first ones, and the vertices follow
+constexpr std::size_t kPointsOfFace = 8;  // at which a face's distance from the original is looked up
 
 class Fitting {
  public:
   Fitting(const Mesh& original, Mesh& level, const PlacementOptions& options)
       : level_(level),
         options_(options),
+        original_(original),
         edges_(list_edges(level)),
         samples_(original, options.samples_per_face * level.face_count()),
         lines_(original) {
@@ -52,9 +55,14 @@ class Fitting {
   void assemble(SparseSystem& system) const;
   void add_lines(SparseSystem& system) const;
   void move();
+  double farthest(const Mesh& mesh, Index face) const;
+  double reach() const;
+  bool keep_faces_near(std::vector<Vec3f>& positions) const;
 
   Mesh& level_;
   const PlacementOptions& options_;
+  SurfaceIndex original_;
+  double reach_ = 0;  // how far a face may be from the original
   std::vector<MeshEdge> edges_;
   SurfaceSamples samples_;
   LineSamples lines_;
@@ -150,12 +158,59 @@ void Fitting::move() {
   std::vector<Vec3f> positions;
   for (const Vec3& p : moved)
     positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-  keep_faces_upright(level_, positions);
+  do {
+    keep_faces_upright(level_, positions);
+  } while (!keep_faces_near(positions));
   level_.positions = std::move(positions);
+}
+
+/// The distance from the original of a face, at some of its points.
+double Fitting::farthest(const Mesh& mesh, Index face) const {
+  double distance = 0;
+  Index hint = kNoIndex;
+  const auto look_at = [&](const Vec3& point) {
+    const SurfaceIndex::Hit hit = original_.nearest(point, std::numeric_limits<double>::infinity(), hint);
+    distance = std::max(distance, hit.distance);
+    hint = hit.face;
+  };
+  for (Index k = 0; k < 3; ++k) look_at(mesh.corner_position(3 * face + k));
+  for (std::size_t k = 0; k < kPointsOfFace; ++k) look_at(point_on_face(mesh, face, k));
+  return distance;
+}
+
+/// How far the two surfaces are from each other now.
+double Fitting::reach() const {
+  double distance = 0;
+  for (const SurfaceSample& sample : samples_.all()) distance = std::max(distance, std::sqrt(sample.squared_distance));
+  for (Index f = 0; f < level_.face_count(); ++f) distance = std::max(distance, farthest(level_, f));
+  return distance;
+}
+
+/// Puts back vertices of faces that their new positions would take out of reach; returns whether there was none.
+bool Fitting::keep_faces_near(std::vector<Vec3f>& positions) const {
+  Mesh moved;
+  moved.positions = positions;
+  moved.wedge_vertex = level_.wedge_vertex;
+  moved.corner_wedge = level_.corner_wedge;
+  bool all_near = true;
+  for (Index f = 0; f < level_.face_count(); ++f) {
+    const auto is_moved = [&](Index k) {
+      const Index v = level_.corner_vertex(3 * f + k);
+      return !(positions[v] == level_.positions[v]);
+    };
+    if (!(is_moved(0) || is_moved(1) || is_moved(2)) || farthest(moved, f) <= reach_) continue;
+    all_near = false;
+    for (Index k = 0; k < 3; ++k) {
+      const Index v = level_.corner_vertex(3 * f + k);
+      positions[v] = level_.positions[v];
+    }
+  }
+  return all_near;
 }
 
 void Fitting::run() {
   double best = assign();
+  reach_ = reach();
   Mesh best_level = level_;
   for (int i = 0; i < options_.iterations; ++i) {
     if (i < kTurningIterations) turn_edges();

@@ -1,7 +1,8 @@
 // The cost of a removal joins three measures of what it changes:
 //   V  the volume swept between the old faces and the new ones, memoryless, after Lindstrom, Turk: Fast and memory
 //      efficient polygonal simplification (Visualization 1998);
-//   D  the distance of everything removed so far to the surface that now stands for it, which keeps the total honest;
+//   D  the distance of everything removed so far to the surface that now stands for it, less most of what it was before
+//      the removal: the memory keeps the total honest, the difference lets what is lost already be;
 //   ΔK the change of the discrete curvature against the full mesh, after Kim, Hong, Kim.
 // The pure metrics of Kim, Hong, Kim use the last alone. bench/README.md has the trials behind the constants.
 
@@ -17,16 +18,17 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinNormalCosine = 0.2;      // a new face may turn this far from the old one at its rim, at first
-constexpr double kAnyCosine = -2;             // any angle will do
+constexpr double kMinPureCosine = 0.2;        // of the angle that faces may turn where curvature alone is the cost
 constexpr double kMinShape = 1e-3;            // a new face's height over its longest edge
 constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured
+constexpr double kForgiven = 0.7;             // share of the distances there were before that a removal is not charged for
+constexpr double kLeastCharged = 0.02;        // share of the distances after it that it is charged for in any case
 constexpr double kBridgeWeight = 3;           // of new surface where the star had none, against distances of points
 constexpr double kLineWeight = 1;             // of a border or crease that moves
 constexpr double kMaterialWeight = 4;         // of a border between materials that moves: faces change their colour
 constexpr double kSeamWeight = 0.1;           // of a seam that moves: what counts there is the price of the attributes
 constexpr double kTieBreak = 0.2;             // weight of the volume swept, as a length, against a pure curvature error
-constexpr double kMinCurvatureChange = 1e-4;  // radians; below it curvature no longer separates removals
+constexpr double kMinCurvatureChange = 0.2;   // radians; below it curvature does not separate removals
 
 double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
   return 0.25 * length(b - a) * angle_between(normal_a, normal_b);
@@ -44,7 +46,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
     : state_(&state),
       options_(&options),
       attributes_(state.mesh, options.weights),
-      min_cosine_(kMinNormalCosine),
+      min_cosine_(options.metric == Metric::Hybrid ? 0 : kMinPureCosine),
       ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
@@ -60,12 +62,6 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   std::vector<Index> next(wedge_begin_.begin(), wedge_begin_.end() - 1);
   vertex_wedges_.resize(mesh.wedge_count());
   for (Index w = 0; w < mesh.wedge_count(); ++w) vertex_wedges_[next[mesh.wedge_vertex[w]]++] = w;
-}
-
-bool RemovalEvaluator::relax_angles() {
-  if (min_cosine_ == kAnyCosine) return false;
-  min_cosine_ = min_cosine_ > 0 ? 0 : kAnyCosine;
-  return true;
 }
 
 Evaluation RemovalEvaluator::evaluate(Index vertex, Removal& removal, Choice& choice) {
@@ -454,22 +450,25 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
       continue;
     }
     at_rim = true;
-    if (min_cosine_ == kAnyCosine) continue;
-    const Vec3& fine = fine_normal_[sector.ring_begin + from];
-    const double cosine = dot(entry.normal, fine);
-    if (cosine < 0 || cosine * cosine < min_cosine_ * min_cosine_ * square_area * squared_length(fine))
-      return Verdict::Flip;
+    if (keeps_upright_ && turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
   }
-  if (min_cosine_ != kAnyCosine && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Flip;
+  if (keeps_upright_ && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
   return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Flip : Verdict::Legal;
 }
 
-/// Whether a texture would be turned over on a new face, where it was not on the old ones.
+/// Whether a face turns by more than the angle allowed, from one normal to another, both of any length.
+bool RemovalEvaluator::turns_too_far(const Vec3& to, const Vec3& from) const {
+  const double cosine = dot(to, from);
+  return cosine < 0 || (min_cosine_ > 0 && cosine < min_cosine_ * length(to) * length(from));
+}
+
+/// Whether a texture would be turned over or lose its area on a new face, where it did neither on the old ones.
 bool RemovalEvaluator::turns_texture(const Sector& sector, PolygonTriangle t) const {
   const std::vector<Index>& polygon = sector.patch->polygon;
   for (std::size_t i = 0; i < attributes_.texture_count(); ++i) {
     const int orientation = sector.scale.orientation[i];
-    if (orientation * attributes_.texture_area(i, polygon[t.a], polygon[t.b], polygon[t.c]) < 0) return true;
+    if (orientation == 0) continue;
+    if (!(orientation * attributes_.texture_area(i, polygon[t.a], polygon[t.b], polygon[t.c]) > 0)) return true;
   }
   return false;
 }
@@ -512,7 +511,7 @@ Verdict RemovalEvaluator::list_admissible(const Sector& sector) {
   for (int which = 0; which < count; ++which) {
     const Triangles triangles = candidate(sector, which);
     const Verdict found = judge(sector, triangles);
-    if (found == Verdict::Link) verdict = Verdict::Link;
+    if (found == Verdict::Turn || (found == Verdict::Link && verdict != Verdict::Turn)) verdict = found;
     if (found == Verdict::Legal) ranked_.emplace_back(squared_volume_sum(sector, triangles), which);
   }
   return ranked_.empty() ? verdict : Verdict::Legal;
@@ -538,7 +537,7 @@ Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch, std::uint8_
 int RemovalEvaluator::best_by_distance(const Sector& sector) {
   std::sort(ranked_.begin(), ranked_.end());
   if (ranked_.size() > kFullyRanked) ranked_.resize(kFullyRanked);
-  for (auto& [rank, which] : ranked_) rank *= std::pow(squared_distance_sum(sector, candidate(sector, which)), 3);
+  for (auto& [rank, which] : ranked_) rank *= std::pow(added_squared_distance(sector, candidate(sector, which)), 3);
   return std::min_element(ranked_.begin(), ranked_.end())->second;
 }
 
@@ -557,9 +556,15 @@ void RemovalEvaluator::gather_points(const Sector& sector) {
   points_.clear();
   weights_.assign(1, 1.0F);
   points_.add({});
-  for (const Index face : sector.patch->faces)
-    for (Index p = state_->points.first(face); p != kNoIndex; p = state_->points.next(p))
-      points_.add(state_->points.position(p) - center_), weights_.push_back(state_->points.weight(p));
+  distance_before_ = 0;
+  const CarriedPoints& carried = state_->points;
+  for (const Index face : sector.patch->faces) {
+    for (Index p = carried.first(face); p != kNoIndex; p = carried.next(p)) {
+      points_.add(carried.position(p) - center_);
+      weights_.push_back(carried.weight(p));
+      distance_before_ += static_cast<double>(carried.weight(p) * carried.squared_distance(p));
+    }
+  }
 }
 
 void RemovalEvaluator::measure_distances(const Sector& sector, PolygonTriangle t, Triangle& entry) {
@@ -570,7 +575,7 @@ void RemovalEvaluator::measure_distances(const Sector& sector, PolygonTriangle t
   entry.has_distances = true;
 }
 
-double RemovalEvaluator::squared_distance_sum(const Sector& sector, Triangles triangles) {
+double RemovalEvaluator::added_squared_distance(const Sector& sector, Triangles triangles) {
   nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
   for (const PolygonTriangle t : triangles) {
     Triangle& entry = triangle(sector, t);
@@ -579,7 +584,7 @@ double RemovalEvaluator::squared_distance_sum(const Sector& sector, Triangles tr
   }
   double sum = 0;
   for (std::size_t i = 0; i < nearest_.size(); ++i) sum += static_cast<double>(weights_[i] * nearest_[i]);
-  return sum;
+  return std::max(sum - kForgiven * distance_before_, kLeastCharged * sum);
 }
 
 double RemovalEvaluator::curvature_change(Sector& sector, Triangles triangles) {
@@ -731,7 +736,7 @@ Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
     squared_volume += squared_volume_sum(sector, triangles);
     if (!is_hybrid) continue;
     if (sectors_.size() > 1) gather_points(sector);
-    squared_distance += squared_distance_sum(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
+    squared_distance += added_squared_distance(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
     if (!attributes_.empty()) squared_attributes += squared_attribute_difference(sector, triangles);
   }
   add_closing_curvature();

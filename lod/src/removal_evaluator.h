@@ -23,11 +23,12 @@ inline constexpr std::size_t kMaxRing = 64;
 
 /// The cost of a removal by the hybrid metric: `moved` is what it moves, a length, `turned` the change of curvature in
 /// radians, which only orders removals that move alike.
-inline constexpr double kDistanceExponent = 0.9;
+inline constexpr double kDistanceExponent = 0.95;
 double hybrid_cost(double moved, double turned);
 
-/// What the evaluation of a removal found.
-enum class Verdict : std::uint8_t { Legal, Locked, Flip, Link, Ring };
+/// What the evaluation of a removal found. `Turn`: a face would turn by more than a right angle, which may be let pass;
+/// `Flip`: it would degenerate, or turn a texture over.
+enum class Verdict : std::uint8_t { Legal, Locked, Turn, Flip, Link, Ring };
 
 /// Which triangulation each sector of a star was given, or which spoke a corner was moved along, for evaluating it again.
 using Choice = std::array<std::uint8_t, 2>;
@@ -57,9 +58,9 @@ class RemovalEvaluator {
   /// other is tried.
   Evaluation evaluate(Index vertex, Removal& removal, Choice& choice);
 
-  /// From now on lets new faces turn further: at first up to a right angle, then by any angle, where a worse shape is
-  /// better than too many faces. Textures still must not turn over. Returns false where there is no further to go.
-  bool relax_angles();
+  /// From now on lets new faces turn by more than a right angle, where a worse shape is better than too many faces.
+  /// Textures still must not turn over. Returns false where they could already.
+  bool relax_angles() { return std::exchange(keeps_upright_, false); }
 
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
@@ -130,7 +131,7 @@ class RemovalEvaluator {
   Verdict judge(const Sector& sector, Triangles triangles);
   double squared_volume_sum(const Sector& sector, Triangles triangles);
   void measure_distances(const Sector& sector, PolygonTriangle t, Triangle& triangle);
-  double squared_distance_sum(const Sector& sector, Triangles triangles);
+  double added_squared_distance(const Sector& sector, Triangles triangles);
 
   double curvature_change(Sector& sector, Triangles triangles);
   void add_coarse_curvature(Sector& sector, Triangles triangles);
@@ -139,6 +140,7 @@ class RemovalEvaluator {
   double bridge_sum(const Sector& sector, Triangles triangles);
   double line_cost(Index vertex) const;
   double squared_attribute_difference(const Sector& sector, Triangles triangles) const;
+  bool turns_too_far(const Vec3& to, const Vec3& from) const;
   bool turns_texture(const Sector& sector, PolygonTriangle t) const;
   Evaluation combine(const RemovalRecord& record);
 
@@ -167,7 +169,8 @@ class RemovalEvaluator {
   AttributeCost attributes_;
   std::vector<Index> wedge_begin_;     // by vertex: its wedges in vertex_wedges_; empty without seams
   std::vector<Index> vertex_wedges_;
-  double min_cosine_;  // of the angle between a new face and the old one at its rim
+  double min_cosine_;
+  bool keeps_upright_ = true;  // whether new faces turn no further than that from the old ones at their rim
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;
@@ -188,6 +191,7 @@ class RemovalEvaluator {
   std::vector<Index> ring_of_site_;       // by vertex, the first of its copies; kNoIndex outside the ring
   PointBatch points_;                     // the sector's carried points
   std::vector<float> weights_;            // of those points
+  double distance_before_ = 0;            // their squared distances to the star, weighted and summed
   std::vector<float> nearest_;
   std::vector<float> distance_;
   std::vector<Triangle> table_;

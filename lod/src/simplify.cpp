@@ -36,8 +36,10 @@ constexpr std::size_t kSmallPiece = 16;
 // How many of the vertices left are looked at, along the curve and each way, for one near a piece that vanishes.
 constexpr int kNearCandidates = 32;
 
-// Where fewer of the vertices left than this share can be removed, faces may turn further than is good for round shapes.
-constexpr double kFewLegal = 0.7;
+// Below this share of the faces, those may turn by more than a right angle once that rule keeps this many vertices for
+// each that can be removed: thin parts get stuck otherwise. Earlier it would let spikes grow on rough surfaces.
+constexpr double kCoarseShare = 0.05;
+constexpr double kManyTurn = 0.05;
 
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
 
@@ -98,8 +100,6 @@ class Simplifier {
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
   Index round_ = 0;
-  bool angles_relaxed_ = false;
-  std::size_t vertices_left_ = 0;  // but for locked ones
   Removal removal_;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
@@ -143,19 +143,20 @@ void Simplifier::evaluate(Index vertex) {
 bool Simplifier::choose_candidates() {
   candidates_.clear();
   std::fill(piece_moves_.begin(), piece_moves_.end(), std::uint8_t{0});
-  vertices_left_ = 0;
+  std::size_t turning = 0;
   for (Index v = 0; v < cost_.size(); ++v) {
-    vertices_left_ += state_.connectivity.has_vertex(v) && verdict_[v] != Verdict::Locked ? 1 : 0;
+    if (verdict_[v] == Verdict::Turn && state_.connectivity.has_vertex(v)) ++turning;
     if (cost_[v] == kIllegal) continue;
     candidates_.push_back(v);
     piece_moves_[pieces_.piece_of(v)] = 1;
   }
   if (candidates_.empty()) return false;
-  if (!angles_relaxed_ && static_cast<double>(candidates_.size()) < kFewLegal * static_cast<double>(vertices_left_)) {
-    relax_angles();
-    return choose_candidates();
-  }
-  const double narrow = options_.metric == Metric::Hybrid ? kNarrowShare : kNarrowPureShare;
+  const bool is_hybrid = options_.metric == Metric::Hybrid;
+  const bool many_turn = static_cast<double>(turning) > kManyTurn * static_cast<double>(candidates_.size());
+  const bool is_coarse = static_cast<double>(state_.connectivity.face_count()) <
+                         kCoarseShare * static_cast<double>(state_.mesh.face_count());
+  if (is_hybrid && is_coarse && many_turn && relax_angles()) return choose_candidates();
+  const double narrow = is_hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size())));
   const auto cheaper = [&](Index a, Index b) { return cost_[a] != cost_[b] ? cost_[a] < cost_[b] : a < b; };
@@ -279,8 +280,7 @@ bool Simplifier::run_round() {
 bool Simplifier::relax_angles() {
   if (!evaluator_.relax_angles()) return false;
   for (Index v = 0; v < cost_.size(); ++v)
-    if (verdict_[v] == Verdict::Flip && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
-  angles_relaxed_ = true;
+    if (verdict_[v] == Verdict::Turn && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
   return true;
 }
 
@@ -390,6 +390,7 @@ BlockedCounts Simplifier::count_blocked() const {
       case Verdict::Locked:
         ++blocked.locked;
         break;
+      case Verdict::Turn:
       case Verdict::Flip:
         ++blocked.flip;
         break;

@@ -42,21 +42,26 @@ std::vector<Index> heirs_of_all(const RemovalRecord& record) {
   return faces;
 }
 
+/// A face that a point is given to, and how far it is from there.
+struct Heir {
+  Index face = kNoIndex;
+  float squared_distance = std::numeric_limits<float>::infinity();
+};
+
 /// Returns the heir nearest to each point.
-std::vector<Index> nearest_heirs(const SimplifyState& state, const std::vector<Index>& taken,
+std::vector<Heir> nearest_heirs(const SimplifyState& state, const std::vector<Index>& taken,
                                  const std::vector<Index>& faces, const Vec3& origin) {
   PointBatch batch;
   for (const Index p : taken) batch.add(state.points.position(p) - origin);
   std::vector<float> distance(batch.padded_size());
-  std::vector<float> nearest(taken.size(), std::numeric_limits<float>::infinity());
-  std::vector<Index> heir(taken.size(), kNoIndex);
+  std::vector<Heir> heir(taken.size());
   for (const Index face : faces) {
     const auto corner = [&](Index i) {
       return Vec3(state.mesh.positions[state.connectivity.vertex(3 * face + i)]) - origin;
     };
     squared_distances(batch, {corner(0), corner(1), corner(2)}, distance.data());
     for (std::size_t i = 0; i < taken.size(); ++i)
-      if (distance[i] < nearest[i]) nearest[i] = distance[i], heir[i] = face;
+      if (distance[i] < heir[i].squared_distance) heir[i] = {face, distance[i]};
   }
   return heir;
 }
@@ -74,15 +79,18 @@ void thin(CarriedPoints& points, std::vector<Index>& members) {
 
 void give_points(SimplifyState& state, const std::vector<Index>& taken, const std::vector<Index>& faces,
                  const Vec3& origin) {
-  const std::vector<Index> heir = nearest_heirs(state, taken, faces, origin);
+  const std::vector<Heir> heir = nearest_heirs(state, taken, faces, origin);
   std::vector<Index> members;
   for (const Index face : faces) {
     // What the heir holds already stays in the count: the face beyond an ear keeps its own points.
     members.clear();
     for (Index p = state.points.first(face); p != kNoIndex; p = state.points.next(p)) members.push_back(p);
     state.points.clear(face);
-    for (std::size_t i = 0; i < taken.size(); ++i)
-      if (heir[i] == face) members.push_back(taken[i]);
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      if (heir[i].face != face) continue;
+      members.push_back(taken[i]);
+      state.points.set_squared_distance(taken[i], heir[i].squared_distance);
+    }
     thin(state.points, members);
     for (const Index p : members) state.points.add(face, p);
   }
