@@ -351,6 +351,27 @@ TEST_CASE("a locked border keeps every one of its vertices") {
   CHECK(result.blocked.locked == 48);
 }
 
+TEST_CASE("holes that no fan fills are filled without turning a face over") {
+  for (const int spikes : {4, 5, 6, 8}) {
+    TriangleSoup soup;
+    soup.positions.push_back({0, 0, 0.1F});
+    const int count = 2 * spikes;
+    for (int i = 0; i < count; ++i) {
+      const double angle = 6.283185307179586 * i / count;
+      const double radius = i % 2 == 0 ? 1 : 0.35;
+      soup.positions.push_back({static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
+      soup.indices.insert(soup.indices.end(), {0, static_cast<Index>(1 + i), static_cast<Index>(1 + (i + 1) % count)});
+    }
+    SimplifyOptions options;
+    options.lock_border = true;
+    const SimplifyResult result = simplified(mesh_of(soup), options);
+    const Mesh base = extract_level(result.mesh, Cursor(result.mesh));
+    INFO(spikes << " spikes");
+    REQUIRE(base.face_count() == static_cast<std::size_t>(count - 2));
+    for (Index f = 0; f < base.face_count(); ++f) CHECK(area_vector(base, f).z > 0);
+  }
+}
+
 TEST_CASE("with an angle for creases, hard edges of files without normals stay lines") {
   const Mesh mesh = mesh_of(faceted_cylinder(12, 6));
   Mesh bare = mesh_of({to_soup(mesh).positions, {}, to_soup(mesh).indices, {}});

@@ -50,7 +50,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
       ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
-  table_.resize(kTriangleNumberCount);
+  table_.resize(kMaxSearchedPolygon * (kMaxSearchedPolygon - 1) * (kMaxSearchedPolygon - 2) / 6);
   // Ties are broken on the metric's own scale: K̄ is an angle, the others are lengths.
   const double diagonal = bounding_box(state.mesh).diagonal();
   tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
@@ -407,24 +407,20 @@ Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std:
     apex = 0;
     while (ring_number(sector, apex) != target) ++apex;
   }
-  for (std::size_t i = 1; i + 1 < size; ++i) {
-    std::array<std::size_t, 3> corner{apex, (apex + i) % size, (apex + i + 1) % size};
-    std::sort(corner.begin(), corner.end());
-    patch.triangles.push_back({static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
-                               static_cast<std::uint8_t>(corner[2])});
-  }
+  const Triangles triangles = fan(size, apex);
+  patch.triangles.assign(triangles.begin(), triangles.end());
   if (options_->metric == Metric::Hybrid) gather_points(sector);
   return judge(sector, patch.triangles);
 }
 
 void RemovalEvaluator::reset_triangles(std::size_t size) {
-  if (size > kMaxTabulatedPolygon) return;
+  if (size > kMaxSearchedPolygon) return;
   const std::size_t used = size * (size - 1) * (size - 2) / 6;
   for (std::size_t i = 0; i < used; ++i) table_[i].known = table_[i].has_angles = table_[i].has_distances = false;
 }
 
 RemovalEvaluator::Triangle& RemovalEvaluator::triangle(const Sector& sector, PolygonTriangle t) {
-  const bool is_tabulated = sector.size() <= kMaxTabulatedPolygon;
+  const bool is_tabulated = sector.size() <= kMaxSearchedPolygon;
   Triangle& entry = is_tabulated ? table_[static_cast<std::size_t>(triangle_number(t))] : untabulated_;
   if (is_tabulated && entry.known) return entry;
   const Vec3& a = position(sector, t.a);
@@ -473,24 +469,70 @@ bool RemovalEvaluator::turns_texture(const Sector& sector, PolygonTriangle t) co
   return false;
 }
 
+/// Judges a whole triangulation; an empty one is none.
 Verdict RemovalEvaluator::judge(const Sector& sector, Triangles triangles) {
+  if (triangles.empty()) return Verdict::Flip;
   for (const PolygonTriangle t : triangles)
     if (const Verdict verdict = triangle(sector, t).verdict; rejects(verdict)) return verdict;
   return Verdict::Legal;
 }
 
-/// Triangulation `which` of a sector's polygon: from the table, or the fan from corner `which` of a large polygon.
+/// Triangulation `which` of a sector's polygon: from the table; of a large polygon the fan from corner `which`, or, where
+/// that is past the last, the one of least volume. Empty where there is none.
 RemovalEvaluator::Triangles RemovalEvaluator::candidate(const Sector& sector, int which) {
   const auto size = static_cast<int>(sector.size());
   if (size <= kMaxTabulatedPolygon) return triangulation(size, which);
+  return which < size ? fan(sector.size(), static_cast<std::size_t>(which)) : least_volume(sector);
+}
+
+RemovalEvaluator::Triangles RemovalEvaluator::fan(std::size_t size, std::size_t apex) {
   fan_.clear();
-  for (int i = 1; i + 1 < size; ++i) {
-    std::array<int, 3> corner{which, (which + i) % size, (which + i + 1) % size};
+  for (std::size_t i = 1; i + 1 < size; ++i) {
+    std::array<std::size_t, 3> corner{apex, (apex + i) % size, (apex + i + 1) % size};
     std::sort(corner.begin(), corner.end());
     fan_.push_back({static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
                     static_cast<std::uint8_t>(corner[2])});
   }
   return fan_;
+}
+
+/// The admissible triangulation with the least sum of squared volumes, by dynamic programming over the polygon's parts,
+/// after Klincsek: Minimal triangulations of polygonal domains (1980).
+RemovalEvaluator::Triangles RemovalEvaluator::least_volume(const Sector& sector) {
+  const std::size_t size = sector.size();
+  least_volume_.clear();
+  if (size > kMaxSearchedPolygon) return least_volume_;
+  least_sum_.assign(size * size, 0);
+  least_apex_.assign(size * size, 0);
+  for (std::size_t span = 2; span < size; ++span) {
+    for (std::size_t from = 0, to = span; to < size; ++from, ++to) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t apex = from + 1; apex < to; ++apex) {
+        const double rest = least_sum_[from * size + apex] + least_sum_[apex * size + to];
+        if (!(rest < least)) continue;
+        const Triangle& entry = triangle(sector, {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex),
+                                                  static_cast<std::uint8_t>(to)});
+        const double sum = rest + entry.volume * entry.volume;
+        if (rejects(entry.verdict) || !(sum < least)) continue;
+        least = sum;
+        least_apex_[from * size + to] = static_cast<std::uint8_t>(apex);
+      }
+      least_sum_[from * size + to] = least;
+    }
+  }
+  if (std::isinf(least_sum_[size - 1])) return least_volume_;
+  std::vector<std::pair<std::size_t, std::size_t>> parts{{0, size - 1}};
+  while (!parts.empty()) {
+    const auto [from, to] = parts.back();
+    parts.pop_back();
+    if (to - from < 2) continue;
+    const std::size_t apex = least_apex_[from * size + to];
+    least_volume_.push_back({static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex),
+                             static_cast<std::uint8_t>(to)});
+    parts.emplace_back(from, apex);
+    parts.emplace_back(apex, to);
+  }
+  return least_volume_;
 }
 
 double RemovalEvaluator::squared_volume_sum(const Sector& sector, Triangles triangles) {
@@ -505,7 +547,7 @@ double RemovalEvaluator::squared_volume_sum(const Sector& sector, Triangles tria
 /// Fills `ranked_` with the admissible triangulations and their squared swept volumes.
 Verdict RemovalEvaluator::list_admissible(const Sector& sector) {
   const auto size = static_cast<int>(sector.size());
-  const int count = size <= kMaxTabulatedPolygon ? triangulation_count(size) : size;
+  const int count = size <= kMaxTabulatedPolygon ? triangulation_count(size) : size + 1;
   ranked_.clear();
   Verdict verdict = Verdict::Flip;
   for (int which = 0; which < count; ++which) {

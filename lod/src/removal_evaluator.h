@@ -21,6 +21,9 @@ namespace lodestone::detail {
 /// Larger rings wait until their neighbours' removals have shrunk them.
 inline constexpr std::size_t kMaxRing = 64;
 
+/// Larger polygons are filled with fans alone; up to here the triangulation that sweeps the least volume is found, too.
+inline constexpr int kMaxSearchedPolygon = 16;
+
 /// The cost of a removal by the hybrid metric: `moved` is what it moves, a length, `turned` the change of curvature in
 /// radians, which only orders removals that move alike.
 inline constexpr double kDistanceExponent = 0.95;
@@ -121,6 +124,8 @@ class RemovalEvaluator {
   Verdict fill_with_fan(Sector& sector, SectorPatch& patch, std::size_t target);
   Verdict choose(Sector& sector, SectorPatch& patch, std::uint8_t& choice);
   Triangles candidate(const Sector& sector, int which);
+  Triangles fan(std::size_t size, std::size_t apex);
+  Triangles least_volume(const Sector& sector);
   Verdict list_admissible(const Sector& sector);
   int best_by_distance(const Sector& sector);
   int best_by_curvature(Sector& sector);
@@ -198,6 +203,9 @@ class RemovalEvaluator {
   Triangle untabulated_;
   std::vector<std::pair<double, int>> ranked_;
   std::vector<PolygonTriangle> fan_;
+  std::vector<PolygonTriangle> least_volume_;
+  std::vector<double> least_sum_;            // by first and last corner of a part of the polygon: of squared volumes
+  std::vector<std::uint8_t> least_apex_;     // and the corner of the triangle on that edge
   RemovalRecord trial_;
   Removal trial_copies_;
   std::vector<Vec3> edge_normal_;  // of coarse faces, by directed polygon edge

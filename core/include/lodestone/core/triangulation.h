@@ -5,7 +5,7 @@
 
 namespace lodestone {
 
-/// Polygons up to this size have a table of all their triangulations; larger ones are triangulated as fans.
+/// Polygons up to this size have a table of all their triangulations.
 inline constexpr int kMaxTabulatedPolygon = 7;
 
 /// A triangle of a polygon's corners, a < b < c, counter-clockwise.
