@@ -43,8 +43,7 @@ TEST_CASE("Gaussian curvature sums to 2π times the Euler characteristic, border
   for (const NamedShape& shape : manifold_shapes()) {
     INFO(shape.name);
     const Curved c = curved(shape.soup);
-    CHECK(total(c, &VertexCurvature::gaussian) ==
-          Approx(2 * kPi * euler_characteristic(c.connectivity)).margin(1e-6));
+    CHECK(total(c, &VertexCurvature::gaussian) == Approx(2 * kPi * euler_characteristic(c.connectivity)).margin(1e-6));
   }
 }
 
@@ -61,6 +60,24 @@ TEST_CASE("curvatures of a cube: a right angle at each edge, π/2 at each corner
     corners += corner ? 1 : 0;
   }
   CHECK(corners == 8);
+}
+
+TEST_CASE("the angle across a crease is no curvature of its sectors") {
+  const Mesh mesh = mesh_of(cube(4));
+  auto connectivity = Connectivity::build(mesh);
+  REQUIRE(connectivity);
+  const std::vector<VertexCurvature> before = vertex_curvatures(mesh, *connectivity);
+  for (Index corner = 0; corner < mesh.corner_wedge.size(); ++corner) {
+    const Vec3 normal = area_vector(mesh, face_of_corner(corner));
+    const Vec3 beyond = area_vector(mesh, face_of_corner(connectivity->opposite(corner)));
+    if (angle_between(normal, beyond) > 0.1) connectivity->mark_crease(corner);
+  }
+  const std::vector<VertexCurvature> after = vertex_curvatures(mesh, *connectivity);
+  for (std::size_t v = 0; v < after.size(); ++v) {
+    CHECK(std::abs(after[v].mean) < 1e-9);
+    CHECK(after[v].gaussian == before[v].gaussian);
+    CHECK(after[v].area == before[v].area);
+  }
 }
 
 TEST_CASE("curvatures of a sphere approach those of the smooth one") {
@@ -92,9 +109,9 @@ TEST_CASE("curvatures scale as an angle and as a length") {
 }
 
 TEST_CASE("the principal curvatures' sum is real also where they would be complex") {
-  CHECK(principal_curvature({1, 0.1, 1}) == Approx(0.2));    // H̄² < K̄·S
-  CHECK(principal_curvature({1, 3, 1}) == Approx(6));        // both positive: 2H̄
-  CHECK(principal_curvature({-1, 0, 1}) == Approx(2));       // a saddle: 2√(H̄² − K̄S)
+  CHECK(principal_curvature({1, 0.1, 1}) == Approx(0.2));  // H̄² < K̄·S
+  CHECK(principal_curvature({1, 3, 1}) == Approx(6));      // both positive: 2H̄
+  CHECK(principal_curvature({-1, 0, 1}) == Approx(2));     // a saddle: 2√(H̄² − K̄S)
   CHECK(principal_curvature({-1, 2, 5}) == Approx(2 * 3));
 }
 

@@ -19,7 +19,8 @@ Mesh level_of(const Mesh& mesh, double ratio) {
   const auto result = simplify(mesh, options);
   REQUIRE(result);
   Cursor cursor(result->mesh);
-  cursor.seek(position_for_faces(result->mesh, static_cast<std::uint64_t>(ratio * static_cast<double>(mesh.face_count()))));
+  cursor.seek(
+      position_for_faces(result->mesh, static_cast<std::uint64_t>(ratio * static_cast<double>(mesh.face_count()))));
   return extract_level(result->mesh, cursor);
 }
 

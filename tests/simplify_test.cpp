@@ -24,8 +24,7 @@ SimplifyResult simplified(const Mesh& mesh, const SimplifyOptions& options = {})
 /// Everything a level is made of, to compare byte for byte.
 std::vector<std::vector<Index>> buffers(const Cursor& cursor, std::size_t group_count) {
   std::vector<std::vector<Index>> all;
-  for (std::size_t g = 0; g < group_count; ++g)
-    all.emplace_back(cursor.corners(g).begin(), cursor.corners(g).end());
+  for (std::size_t g = 0; g < group_count; ++g) all.emplace_back(cursor.corners(g).begin(), cursor.corners(g).end());
   return all;
 }
 
@@ -359,7 +358,8 @@ TEST_CASE("holes that no fan fills are filled without turning a face over") {
     for (int i = 0; i < count; ++i) {
       const double angle = 6.283185307179586 * i / count;
       const double radius = i % 2 == 0 ? 1 : 0.35;
-      soup.positions.push_back({static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
+      soup.positions.push_back(
+          {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
       soup.indices.insert(soup.indices.end(), {0, static_cast<Index>(1 + i), static_cast<Index>(1 + (i + 1) % count)});
     }
     SimplifyOptions options;
@@ -383,6 +383,20 @@ TEST_CASE("with an angle for creases, hard edges of files without normals stay l
   cursor.seek(position_for_faces(result.mesh, 24));
   CHECK(result.mesh.deviation[cursor.position()] < 1e-5F);
   CHECK(extract_level(result.mesh, cursor).vertex_count() == 24);
+}
+
+TEST_CASE("creases are simplified along themselves at no change of curvature") {
+  const Mesh mesh = mesh_of(faceted_cylinder(12, 6));
+  Mesh bare = mesh_of({to_soup(mesh).positions, {}, to_soup(mesh).indices, {}});
+  for (const Metric metric : {Metric::Mean, Metric::Principal}) {
+    SimplifyOptions options;
+    options.crease_angle = 0.1;
+    options.metric = metric;
+    options.stop.max_curvature_error = 1e-5;
+    CHECK(face_counts(simplified(bare, options).mesh).front() == 24);  // two for each side
+    options.crease_angle.reset();
+    CHECK(face_counts(simplified(bare, options).mesh).front() > 48);
+  }
 }
 
 TEST_CASE("what skins and morph targets do counts: their middles stay dense where the rest is flat") {
@@ -412,11 +426,13 @@ TEST_CASE("an error in the record's numbers is found") {
     return valid ? std::string("valid") : valid.error().message;
   };
   CHECK(message([](ProgressiveMesh&) {}) == "valid");
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.polygons[0] = 100000; }), contains("names wedge 100000 before it exists"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.polygons[0] = 100000; }),
+             contains("names wedge 100000 before it exists"));
   CHECK_THAT(message([](ProgressiveMesh& m) { m.slots[0] = 100000; }), contains("names face 100000"));
   CHECK_THAT(message([](ProgressiveMesh& m) { m.triangles[2] = 200; }), contains("triangle outside its polygon"));
   CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors[0].group = 9; }), contains("names group 9"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors[0].shape = static_cast<SectorShape>(7); }), contains("polygon of"));
+  CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors[0].shape = static_cast<SectorShape>(7); }),
+             contains("polygon of"));
   CHECK_THAT(message([](ProgressiveMesh& m) { m.deviation[0] = -1; }), contains("error that is negative"));
   CHECK_THAT(message([](ProgressiveMesh& m) { m.groups[0].face_count += 1; }), contains("are due"));
   CHECK_THAT(message([](ProgressiveMesh& m) { m.positions.pop_back(); }), contains("positions has"));

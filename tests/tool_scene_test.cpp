@@ -220,15 +220,18 @@ TEST_CASE("build: settings lock and weigh nodes and materials by name, and name 
     CHECK(run.exit_code != 0);
     return run.err;
   };
-  CHECK_THAT(refusal(R"({"nodes": {"lrge": {"lock": true}}})"), contains("no node of the scene's meshes is called 'lrge'"));
+  CHECK_THAT(refusal(R"({"nodes": {"lrge": {"lock": true}}})"),
+             contains("no node of the scene's meshes is called 'lrge'"));
   CHECK_THAT(refusal(R"({"nodes": {"large": {"look": true}}})"), contains("no setting is called 'look'"));
-  CHECK_THAT(refusal(R"({"nodes": {"large": {"importance": -1}}})"), contains("importance is not a number of 0 or more"));
+  CHECK_THAT(refusal(R"({"nodes": {"large": {"importance": -1}}})"),
+             contains("importance is not a number of 0 or more"));
   CHECK_THAT(refusal("[]"), contains("is not a JSON object"));
 }
 
 TEST_CASE("build: weights are checked and reported; attributes' deviations are in the report") {
   const SceneShop shop;
-  CHECK_THAT(shop.build({"--weight", "smell=1"}).err, contains("'smell' is not normal, texcoord, color, skin or target"));
+  CHECK_THAT(shop.build({"--weight", "smell=1"}).err,
+             contains("'smell' is not normal, texcoord, color, skin or target"));
   CHECK_THAT(shop.build({"--weight", "normal=x"}).err, contains("'normal=x' does not end in a factor"));
   CHECK(shop.build({"--weight", "normal"}).exit_code == 1);
   const ProgramRun run = run_program({"build", demo_model().string(), "-o", shop.glb, "--report", shop.report,

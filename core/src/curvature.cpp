@@ -20,10 +20,10 @@ Vec3 corner_normal(const Mesh& mesh, const Connectivity& connectivity, Index cor
                position(mesh, connectivity, previous_corner(corner)) - p);
 }
 
-/// The dihedral share of the edge facing `corner`: ¼ |e|·|β|; 0 at a border.
+/// The dihedral share of the edge facing `corner`: ¼ |e|·|β|; 0 at a border and at a crease.
 double edge_share(const Mesh& mesh, const Connectivity& connectivity, Index corner) {
   const Index across = connectivity.opposite(corner);
-  if (across == kNoIndex) return 0;
+  if (across == kNoIndex || connectivity.is_crease(corner)) return 0;
   const double angle =
       angle_between(corner_normal(mesh, connectivity, corner), corner_normal(mesh, connectivity, across));
   return 0.25 * angle *

@@ -26,12 +26,12 @@ namespace {
 using namespace detail;
 
 constexpr int kSolverSteps = 60;
-constexpr double kStay = 0.02;        // how much a vertex wants to stay, of the weight of its samples
-constexpr double kCornerStay = 1e6;   // the same where lines end or meet
-constexpr double kAlong = 0.05;       // what distance along the surface or line counts, of distance from it
-constexpr double kLineWeight = 2;     // of lines against surfaces, at equal length
-constexpr double kSettled = 0.985;    // of the sum of squares before: less gain is not worth another iteration
-constexpr int kTurningIterations = 3; // edges are turned in the first ones, and the vertices follow
+constexpr double kStay = 0.02;            // how much a vertex wants to stay, of the weight of its samples
+constexpr double kCornerStay = 1e6;       // the same where lines end or meet
+constexpr double kAlong = 0.05;           // what distance along the surface or line counts, of distance from it
+constexpr double kLineWeight = 2;         // of lines against surfaces, at equal length
+constexpr double kSettled = 0.985;        // of the sum of squares before: less gain is not worth another iteration
+constexpr int kTurningIterations = 3;     // edges are turned in the first ones, and the vertices follow
 constexpr std::size_t kPointsOfFace = 8;  // at which a face's distance from the original is looked up
 
 class Fitting {
@@ -103,8 +103,8 @@ void Fitting::assemble(SparseSystem& system) const {
   system.clear();
   for (const SurfaceSample& sample : samples_.all()) {
     const Vec3 normal = normalized(area_vector(level_, sample.face));
-    const Symmetric3 metric = Symmetric3::identity(kAlong * sample.weight) +
-                              Symmetric3::outer(normal, (1 - kAlong) * sample.weight);
+    const Symmetric3 metric =
+        Symmetric3::identity(kAlong * sample.weight) + Symmetric3::outer(normal, (1 - kAlong) * sample.weight);
     system.add(&corner_vertex_[3 * std::size_t{sample.face}], sample.weights.data(), 3, sample.position, metric);
   }
   add_lines(system);
@@ -124,8 +124,7 @@ void Fitting::add_lines(SparseSystem& system) const {
   for (const MeshEdge& edge : edges_) {
     if (!edge.constrained) continue;
     of_face.push_back(&edge);
-    for (const Index v : {edge.vertices[0], edge.vertices[1], edge.vertices[1]})
-      segments.corner_wedge.push_back(v);
+    for (const Index v : {edge.vertices[0], edge.vertices[1], edge.vertices[1]}) segments.corner_wedge.push_back(v);
   }
   if (of_face.empty()) return;
   segments.wedge_vertex.resize(segments.positions.size());

@@ -18,17 +18,17 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinPureCosine = 0.2;        // of the angle that faces may turn where curvature alone is the cost
-constexpr double kMinShape = 1e-3;            // a new face's height over its longest edge
-constexpr std::size_t kFullyRanked = 3;       // triangulations, by swept volume, whose distances are measured
-constexpr double kForgiven = 0.7;             // share of the distances there were before that a removal is not charged for
-constexpr double kLeastCharged = 0.02;        // share of the distances after it that it is charged for in any case
-constexpr double kBridgeWeight = 3;           // of new surface where the star had none, against distances of points
-constexpr double kLineWeight = 1;             // of a border or crease that moves
-constexpr double kMaterialWeight = 4;         // of a border between materials that moves: faces change their colour
-constexpr double kSeamWeight = 0.1;           // of a seam that moves: what counts there is the price of the attributes
-constexpr double kTieBreak = 0.2;             // weight of the volume swept, as a length, against a pure curvature error
-constexpr double kMinCurvatureChange = 0.2;   // radians; below it curvature does not separate removals
+constexpr double kMinPureCosine = 0.2;   // of the angle that faces may turn where curvature alone is the cost
+constexpr double kMinShape = 1e-3;       // a new face's height over its longest edge
+constexpr std::size_t kFullyRanked = 3;  // triangulations, by swept volume, whose distances are measured
+constexpr double kForgiven = 0.7;        // share of the distances there were before that a removal is not charged for
+constexpr double kLeastCharged = 0.02;   // share of the distances after it that it is charged for in any case
+constexpr double kBridgeWeight = 3;      // of new surface where the star had none, against distances of points
+constexpr double kLineWeight = 1;        // of a border or crease that moves
+constexpr double kMaterialWeight = 4;    // of a border between materials that moves: faces change their colour
+constexpr double kSeamWeight = 0.1;      // of a seam that moves: what counts there is the price of the attributes
+constexpr double kTieBreak = 0.2;        // weight of the volume swept, as a length, against a pure curvature error
+constexpr double kMinCurvatureChange = 0.2;  // radians; below it curvature does not separate removals
 
 double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
   return 0.25 * length(b - a) * angle_between(normal_a, normal_b);
@@ -194,6 +194,7 @@ void RemovalEvaluator::gather_normals() {
   fine_normal_.resize(fine_corner_.size());
   outer_normal_.resize(fine_corner_.size());
   has_outer_.assign(fine_corner_.size(), 0);
+  bends_.assign(fine_corner_.size(), 0);
   const auto corner_position = [&](Index corner) { return Vec3(state_->mesh.positions[mesh.vertex(corner)]); };
   for (std::size_t i = 0; i < fine_corner_.size(); ++i) {
     const Vec3& a = ring_position_[i];
@@ -201,11 +202,13 @@ void RemovalEvaluator::gather_normals() {
     fine_normal_[i] = cross(a - center_, b - center_);
     const Index outer = mesh.opposite(fine_corner_[i]);
     has_outer_[i] = outer != kNoIndex ? 1 : 0;
+    bends_[i] = outer != kNoIndex && !mesh.is_crease(fine_corner_[i]) ? 1 : 0;
     if (needs_dihedrals_ && outer != kNoIndex) outer_normal_[i] = cross(a - b, corner_position(outer) - b);
   }
 }
 
-/// Notes which ring vertices an edge joins, in any sheet; false where the ring meets itself or a face lies over the star.
+/// Notes which ring vertices an edge joins, in any sheet; false where the ring meets itself or a face lies over the
+/// star.
 bool RemovalEvaluator::gather_links(Index vertex) {
   const Connectivity& mesh = state_->connectivity;
   bool simple = true;
@@ -359,12 +362,12 @@ void RemovalEvaluator::gather_outside_curvature() {
       outside_[j].gaussian += angle_between(a - b, center_ - b);
     }
     if (!needs_dihedrals_) continue;
-    if (has_outer_[i] != 0) {
+    if (bends_[i] != 0) {
       const double rim = dihedral_share(a, b, fine_normal_[i], outer_normal_[i]);
       outside_[i].mean -= rim;
       outside_[j].mean -= rim;
     }
-    if (i > 0 || star_.closed) {
+    if ((i > 0 || star_.closed) && !state_->connectivity.is_crease(previous_corner(fine_corner_[i]))) {
       const Vec3& before = fine_normal_[i > 0 ? i - 1 : fine_corner_.size() - 1];
       outside_[i].mean -= dihedral_share(center_, a, before, fine_normal_[i]);
     }
@@ -477,8 +480,8 @@ Verdict RemovalEvaluator::judge(const Sector& sector, Triangles triangles) {
   return Verdict::Legal;
 }
 
-/// Triangulation `which` of a sector's polygon: from the table; of a large polygon the fan from corner `which`, or, where
-/// that is past the last, the one of least volume. Empty where there is none.
+/// Triangulation `which` of a sector's polygon: from the table; of a large polygon the fan from corner `which`, or,
+/// where that is past the last, the one of least volume. Empty where there is none.
 RemovalEvaluator::Triangles RemovalEvaluator::candidate(const Sector& sector, int which) {
   const auto size = static_cast<int>(sector.size());
   if (size <= kMaxTabulatedPolygon) return triangulation(size, which);
@@ -510,8 +513,8 @@ RemovalEvaluator::Triangles RemovalEvaluator::least_volume(const Sector& sector)
       for (std::size_t apex = from + 1; apex < to; ++apex) {
         const double rest = least_sum_[from * size + apex] + least_sum_[apex * size + to];
         if (!(rest < least)) continue;
-        const Triangle& entry = triangle(sector, {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex),
-                                                  static_cast<std::uint8_t>(to)});
+        const Triangle& entry = triangle(
+            sector, {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex), static_cast<std::uint8_t>(to)});
         const double sum = rest + entry.volume * entry.volume;
         if (rejects(entry.verdict) || !(sum < least)) continue;
         least = sum;
@@ -527,8 +530,8 @@ RemovalEvaluator::Triangles RemovalEvaluator::least_volume(const Sector& sector)
     parts.pop_back();
     if (to - from < 2) continue;
     const std::size_t apex = least_apex_[from * size + to];
-    least_volume_.push_back({static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex),
-                             static_cast<std::uint8_t>(to)});
+    least_volume_.push_back(
+        {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex), static_cast<std::uint8_t>(to)});
     parts.emplace_back(from, apex);
     parts.emplace_back(apex, to);
   }
@@ -658,7 +661,7 @@ void RemovalEvaluator::add_coarse_curvature(Sector& sector, Triangles triangles)
       double angle_share = 0;
       if (is_rim(sector, from, to)) {
         const std::size_t rim = sector.ring_begin + from;
-        if (has_outer_[rim] != 0) angle_share = dihedral_share(p, q, entry.normal, outer_normal_[rim]);
+        if (bends_[rim] != 0) angle_share = dihedral_share(p, q, entry.normal, outer_normal_[rim]);
       } else if (is_entry(sector, from, to) || is_exit(sector, from, to)) {
         if (is_entry(sector, from, to)) sector.entry_normal = entry.normal;
         if (is_exit(sector, from, to)) sector.exit_normal = entry.normal;
@@ -675,7 +678,7 @@ void RemovalEvaluator::add_coarse_curvature(Sector& sector, Triangles triangles)
   }
 }
 
-/// Adds the angles between neighbouring sectors at the edges where they now meet.
+/// Adds the angles between neighbouring sectors at the edges where they now meet, but for creases.
 void RemovalEvaluator::add_closing_curvature() {
   if (!needs_dihedrals_ || !star_.closed) return;
   for (std::size_t s = 0; s < sectors_.size() && sectors_.size() > 1; ++s) {
@@ -684,6 +687,7 @@ void RemovalEvaluator::add_closing_curvature() {
     if (before.size() == 2 || sector.size() == 2) continue;
     const bool both_open = !before.is_moved() && !sector.is_moved();
     if (both_open && (sectors_.size() > 2 || s == 0)) continue;  // no edge, or the one that the other turn sees
+    if (sector.patch->starts_at_crease || (both_open && before.patch->starts_at_crease)) continue;
     const std::size_t from = ring_number(sector, sector.size() - 1);
     const std::size_t to = ring_number(sector, 0);
     const double share =

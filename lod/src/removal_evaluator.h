@@ -33,7 +33,8 @@ double hybrid_cost(double moved, double turned);
 /// `Flip`: it would degenerate, or turn a texture over.
 enum class Verdict : std::uint8_t { Legal, Locked, Turn, Flip, Link, Ring };
 
-/// Which triangulation each sector of a star was given, or which spoke a corner was moved along, for evaluating it again.
+/// Which triangulation each sector of a star was given, or which spoke a corner was moved along, for evaluating it
+/// again.
 using Choice = std::array<std::uint8_t, 2>;
 inline constexpr std::uint8_t kNoChoice = 255;
 
@@ -48,8 +49,8 @@ using Removal = std::vector<RemovalRecord>;
 
 /// Finds the best way to remove a vertex, and what it costs.
 ///
-/// Interior vertices and those on a line leave a hole that is retriangulated. Corners move to a neighbour, and so do the
-/// copies of a vertex that was cut into sheets: all to the same place, so that the sheets stay together.
+/// Interior vertices and those on a line leave a hole that is retriangulated. Corners move to a neighbour, and so do
+/// the copies of a vertex that was cut into sheets: all to the same place, so that the sheets stay together.
 ///
 /// Keeps scratch memory of one star: one object for each thread.
 class RemovalEvaluator {
@@ -172,7 +173,7 @@ class RemovalEvaluator {
   const SimplifyState* state_;
   const SimplifyOptions* options_;
   AttributeCost attributes_;
-  std::vector<Index> wedge_begin_;     // by vertex: its wedges in vertex_wedges_; empty without seams
+  std::vector<Index> wedge_begin_;  // by vertex: its wedges in vertex_wedges_; empty without seams
   std::vector<Index> vertex_wedges_;
   double min_cosine_;
   bool keeps_upright_ = true;  // whether new faces turn no further than that from the old ones at their rim
@@ -190,6 +191,7 @@ class RemovalEvaluator {
   std::vector<Vec3> fine_normal_;   // of the star's faces
   std::vector<Vec3> outer_normal_;  // of the faces beyond the rim; unset at a border
   std::vector<std::uint8_t> has_outer_;
+  std::vector<std::uint8_t> bends_;  // whether the angle at the rim is curvature: there is a face beyond, and no crease
   std::vector<VertexCurvature> outside_;  // the ring's curvature without the star
   std::vector<VertexCurvature> after_;    // and with a retriangulation
   std::vector<std::uint8_t> linked_;      // which ring vertices an edge joins
@@ -204,8 +206,8 @@ class RemovalEvaluator {
   std::vector<std::pair<double, int>> ranked_;
   std::vector<PolygonTriangle> fan_;
   std::vector<PolygonTriangle> least_volume_;
-  std::vector<double> least_sum_;            // by first and last corner of a part of the polygon: of squared volumes
-  std::vector<std::uint8_t> least_apex_;     // and the corner of the triangle on that edge
+  std::vector<double> least_sum_;         // by first and last corner of a part of the polygon: of squared volumes
+  std::vector<std::uint8_t> least_apex_;  // and the corner of the triangle on that edge
   RemovalRecord trial_;
   Removal trial_copies_;
   std::vector<Vec3> edge_normal_;  // of coarse faces, by directed polygon edge

@@ -75,7 +75,6 @@ class Simplifier {
   std::vector<Index> choose_pieces(bool stuck);
   void remove_piece(Index piece);
   Index vertex_left_near(Index vertex, Index piece) const;
-  
 
   BlockedCounts count_blocked() const;
 
@@ -87,9 +86,9 @@ class Simplifier {
 
   Pieces pieces_;
   std::vector<float> piece_cost_;
-  std::vector<float> piece_error_;                        // curvature error, in the metric's own unit
-  std::vector<std::uint8_t> piece_moves_;                 // whether any of its vertices can be removed
-  float limit_ = 0;  // the cost that bounds this round's removals
+  std::vector<float> piece_error_;         // curvature error, in the metric's own unit
+  std::vector<std::uint8_t> piece_moves_;  // whether any of its vertices can be removed
+  float limit_ = 0;                        // the cost that bounds this round's removals
 
   std::vector<float> charge_;  // by removal, in order
   std::vector<float> cost_;    // by vertex; of several copies the first stands for all
@@ -180,7 +179,8 @@ bool Simplifier::ring_is_free(Index vertex) {
   for (Index copy = vertex;;) {
     mesh.gather_star(copy, star_);
     for (const Index corner : star_.corners)
-      if (is_claimed(mesh.vertex(next_corner(corner))) || is_claimed(mesh.vertex(previous_corner(corner)))) return false;
+      if (is_claimed(mesh.vertex(next_corner(corner))) || is_claimed(mesh.vertex(previous_corner(corner))))
+        return false;
     copy = mesh.next_copy(copy);
     if (copy == vertex) return true;
   }
@@ -280,7 +280,8 @@ bool Simplifier::run_round() {
 bool Simplifier::relax_angles() {
   if (!evaluator_.relax_angles()) return false;
   for (Index v = 0; v < cost_.size(); ++v)
-    if (verdict_[v] == Verdict::Turn && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
+    if (verdict_[v] == Verdict::Turn && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v)
+      evaluate(v);
   return true;
 }
 
@@ -375,7 +376,8 @@ Index Simplifier::vertex_left_near(Index vertex, Index piece) const {
   int found = 0;
   for (Index v = vertex; v-- > 0 && found < kNearCandidates;) found += consider(v) ? 1 : 0;
   found = 0;
-  for (Index v = vertex + 1; v < state_.mesh.vertex_count() && found < kNearCandidates; ++v) found += consider(v) ? 1 : 0;
+  for (Index v = vertex + 1; v < state_.mesh.vertex_count() && found < kNearCandidates; ++v)
+    found += consider(v) ? 1 : 0;
   return best;
 }
 

@@ -50,7 +50,7 @@ struct Heir {
 
 /// Returns the heir nearest to each point.
 std::vector<Heir> nearest_heirs(const SimplifyState& state, const std::vector<Index>& taken,
-                                 const std::vector<Index>& faces, const Vec3& origin) {
+                                const std::vector<Index>& faces, const Vec3& origin) {
   PointBatch batch;
   for (const Index p : taken) batch.add(state.points.position(p) - origin);
   std::vector<float> distance(batch.padded_size());
@@ -130,8 +130,7 @@ void carry_memory(SimplifyState& state, const RemovalRecord& record) {
   for (const SectorPatch& sector : record.sectors)
     others.push_back(state.connectivity.vertex_of_wedge(sector.polygon.front()));
   const SectorPatch& last = record.sectors.back();
-  if (record.open_star)
-    others.push_back(state.connectivity.vertex_of_wedge(last.polygon[last.face_count()]));
+  if (record.open_star) others.push_back(state.connectivity.vertex_of_wedge(last.polygon[last.face_count()]));
   const Index target = record.target != kNoIndex ? record.target : others.front();
   others.erase(std::remove(others.begin(), others.end(), target), others.end());
   state.lines.collapse(record.vertex, target, others);

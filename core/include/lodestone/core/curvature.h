@@ -7,7 +7,9 @@
 
 namespace lodestone {
 
-/// The discrete curvatures of one vertex, integrated over its share of the surface.
+/// The discrete curvatures of one vertex, integrated over its share of the surface, each smooth sector by itself: the
+/// angle across a crease is none of the surface's curvature. (K̄ knows no such angles: of a crease vertex it is the sum
+/// of its sectors' π − Σα, of a corner that differs by a constant.)
 ///
 /// Source: Kim, Hong, Kim: Mesh simplification with discrete curvature error metric, section 2.
 struct VertexCurvature {
