@@ -26,12 +26,22 @@ namespace {
 using namespace detail;
 
 constexpr int kSolverSteps = 60;
-constexpr double kStay = 0.02;            // how much a vertex wants to stay, of the weight of its samples
-constexpr double kCornerStay = 1e6;       // the same where lines end or meet
-constexpr double kAlong = 0.05;           // what distance along the surface or line counts, of distance from it
-constexpr double kLineWeight = 2;         // of lines against surfaces, at equal length
-constexpr double kSettled = 0.985;        // of the sum of squares before: less gain is not worth another iteration
-constexpr int kTurningIterations = 3;     // edges are turned in the first ones, and the vertices follow
+constexpr double kStay = 0.02;                // how much a vertex wants to stay, of the weight of its samples
+constexpr double kCornerStay = 1e6;           // the same where lines end or meet
+constexpr double kAlong = 0.05;               // what distance along the surface or line counts, of distance from it
+constexpr double kLineWeight = 2;             // of lines against surfaces, at equal length
+constexpr std::size_t kFewSamples = 150'000;  // small levels take a few more iterations in no time
+
+// Less gain than this, of the sum of squares before, is not worth another iteration; edges are turned in the first
+// ones, and the vertices follow.
+struct Effort {
+  int times;  // as many iterations as asked for
+  int turning;
+  double settled;
+};
+constexpr Effort kEffort = {1, 3, 0.985};
+constexpr Effort kEffortForFew = {3, 6, 0.998};
+
 constexpr std::size_t kPointsOfFace = 8;  // at which a face's distance from the original is looked up
 
 class Fitting {
@@ -211,15 +221,16 @@ void Fitting::run() {
   double best = assign();
   reach_ = reach();
   Mesh best_level = level_;
-  for (int i = 0; i < options_.iterations; ++i) {
-    if (i < kTurningIterations) turn_edges();
+  const Effort effort = samples_.all().size() <= kFewSamples ? kEffortForFew : kEffort;
+  for (int i = 0; i < effort.times * options_.iterations; ++i) {
+    if (i < effort.turning) turn_edges();
     move();
     const double error = assign();
     if (!(error < best)) break;
-    const bool settled = error > kSettled * best;
+    const bool settled = error > effort.settled * best;
     best = error;
     best_level = level_;
-    if (settled && i + 1 >= kTurningIterations) break;
+    if (settled && i + 1 >= effort.turning) break;
   }
   level_ = std::move(best_level);
 }
