@@ -18,7 +18,7 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinPureCosine = 0.2;   // of the angle that faces may turn where curvature alone is the cost
+constexpr double kMinCosine = 0.2;       // of the angle that faces may turn, at first
 constexpr double kMinShape = 1e-3;       // a new face's height over its longest edge
 constexpr std::size_t kFullyRanked = 3;  // triangulations, by swept volume, whose distances are measured
 constexpr double kForgiven = 0.7;        // share of the distances there were before that a removal is not charged for
@@ -46,7 +46,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
     : state_(&state),
       options_(&options),
       attributes_(state.mesh, options.weights),
-      min_cosine_(options.metric == Metric::Hybrid ? 0 : kMinPureCosine),
+      min_cosine_(kMinCosine),
       ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;

@@ -62,9 +62,13 @@ class RemovalEvaluator {
   /// other is tried.
   Evaluation evaluate(Index vertex, Removal& removal, Choice& choice);
 
-  /// From now on lets new faces turn by more than a right angle, where a worse shape is better than too many faces.
-  /// Textures still must not turn over. Returns false where they could already.
-  bool relax_angles() { return std::exchange(keeps_upright_, false); }
+  /// From now on lets new faces turn further: at first up to a right angle; then, if `beyond`, by any angle, where a
+  /// worse shape is better than too many faces. Textures still must not turn over. Returns whether there was further to
+  /// go.
+  bool relax_angles(bool beyond) {
+    if (std::exchange(min_cosine_, 0) > 0) return true;
+    return beyond && std::exchange(keeps_upright_, false);
+  }
 
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.

@@ -36,8 +36,9 @@ constexpr std::size_t kSmallPiece = 16;
 // How many of the vertices left are looked at, along the curve and each way, for one near a piece that vanishes.
 constexpr int kNearCandidates = 32;
 
-// Below this share of the faces, those may turn by more than a right angle once that rule keeps this many vertices for
-// each that can be removed: thin parts get stuck otherwise. Earlier it would let spikes grow on rough surfaces.
+// Faces may turn further, up to a right angle, once the limit on angles keeps this many vertices for each that can be
+// removed, and below this share of the faces by any angle: thin parts get stuck otherwise. Any angle earlier would let
+// spikes grow on rough surfaces, and right angles at once would make the bounds on the deviation useless.
 constexpr double kCoarseShare = 0.05;
 constexpr double kManyTurn = 0.05;
 
@@ -65,7 +66,7 @@ class Simplifier {
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
   void update_dirty();
-  bool relax_angles();
+  bool relax_angles(bool beyond_right_angles);
   bool target_met();
   void note_charge(double cost);
   std::vector<float> charges() const;
@@ -154,7 +155,7 @@ bool Simplifier::choose_candidates() {
   const bool many_turn = static_cast<double>(turning) > kManyTurn * static_cast<double>(candidates_.size());
   const bool is_coarse = static_cast<double>(state_.connectivity.face_count()) <
                          kCoarseShare * static_cast<double>(state_.mesh.face_count());
-  if (is_hybrid && is_coarse && many_turn && relax_angles()) return choose_candidates();
+  if (is_hybrid && many_turn && relax_angles(is_coarse)) return choose_candidates();
   const double narrow = is_hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size())));
@@ -277,8 +278,8 @@ bool Simplifier::run_round() {
 }
 
 /// Lets faces turn further, and looks anew at the vertices that this kept. Returns whether there was further to go.
-bool Simplifier::relax_angles() {
-  if (!evaluator_.relax_angles()) return false;
+bool Simplifier::relax_angles(bool beyond_right_angles) {
+  if (!evaluator_.relax_angles(beyond_right_angles)) return false;
   for (Index v = 0; v < cost_.size(); ++v)
     if (verdict_[v] == Verdict::Turn && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v)
       evaluate(v);
@@ -411,7 +412,7 @@ SimplifyResult Simplifier::run() {
   prepare();
   const double full_faces = static_cast<double>(state_.connectivity.face_count());
   while (!target_met()) {
-    if (!run_round() && !relax_angles()) break;
+    if (!run_round() && !relax_angles(true)) break;
     bounds_.end_round(state_.connectivity);
     if (bounds_.current() > options_.stop.max_deviation) {
       stop_reason_ = StopReason::Deviation;
