@@ -2,8 +2,9 @@
 // successive mappings (Visualization 1997). Both are projected to a plane; where neither folds there, the overlay of
 // their edges cuts them into cells on which both are linear, so the largest displacement stands at a corner of a cell:
 // at the removed vertex or where a spoke crosses a diagonal. On an open sector the removed vertex first slides to its
-// foot on the closing edge, on a moved one to the vertex it moves to. A star of several sectors may also be looked at as
-// one. Where the projection folds, a cruder map is bounded by edge lengths.
+// foot on the closing edge, on a moved one to the vertex it moves to. A star of several sectors may also be looked at
+// as one. Where every projection folds, and where the map moves points by as much as a spoke, the distances between the
+// faces are searched.
 
 #include "displacement.h"
 
@@ -14,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "patch_distance.h"
 #include "point_triangle.h"
 #include "triangle.h"
 
@@ -158,16 +160,6 @@ double overlay_displacement(const Overlay& overlay) {
   return largest;
 }
 
-/// Any fine point lies within its spoke's length of the rim, any coarse point within its edge's length of a corner.
-double length_bound(const Overlay& overlay) {
-  double largest = 0;
-  for (const Vec3& p : overlay.ring) largest = std::max(largest, length(p - overlay.center));
-  for (const PolygonTriangle t : overlay.triangles)
-    for (const auto& [a, b] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.a, t.c}})
-      largest = std::max(largest, length(overlay.ring[a] - overlay.ring[b]));
-  return largest;
-}
-
 /// A ring position as the mesh has it: the conversion back is exact.
 Vec3f stored(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 
@@ -202,18 +194,44 @@ double sector_bound(const Mesh& mesh, const SectorPatch& sector, const Vec3& cen
   const Overlay overlay = make_overlay(mesh, sector, center);
   if (overlay.ring.size() == 2)
     return std::sqrt(squared_distance_to_segment(overlay.center, overlay.ring[0], overlay.ring[1]));
-  if (sector.shape == SectorShape::Moved) return length(center - overlay.ring.back());  // each face moves with its corner
-  return std::min(overlay_bound(overlay), length_bound(overlay));
+  if (sector.shape == SectorShape::Moved)
+    return length(center - overlay.ring.back());  // each face moves with its corner
+  return overlay_bound(overlay);
+}
+
+double longest_spoke(const Mesh& mesh, const RemovalRecord& record) {
+  const Vec3 center(mesh.positions[record.vertex]);
+  double longest = 0;
+  for (const SectorPatch& sector : record.sectors)
+    for (const Index wedge : sector.polygon)
+      longest = std::max(longest, length(center - Vec3(mesh.positions[mesh.wedge_vertex[wedge]])));
+  return longest;
+}
+
+/// The star's faces, and the coarse ones; a sector that has none leaves the edge at which the next face lies.
+void gather_faces(const Mesh& mesh, const RemovalRecord& record, std::vector<Triangle>& fine,
+                  std::vector<Triangle>& coarse) {
+  for (const SectorPatch& sector : record.sectors) {
+    const auto at = [&](std::size_t i) { return mesh.positions[mesh.wedge_vertex[sector.polygon[i]]]; };
+    for (std::size_t i = 0; i < sector.face_count(); ++i)
+      fine.push_back({mesh.positions[record.vertex], at(i), at(i + 1 < sector.polygon.size() ? i + 1 : 0)});
+    for (const PolygonTriangle t : sector.triangles) coarse.push_back({at(t.a), at(t.b), at(t.c)});
+    if (sector.polygon.size() == 2) coarse.push_back({at(0), at(1), at(1)});
+  }
 }
 
 }  // namespace
 
 double displacement_bound(const Mesh& mesh, const RemovalRecord& record) {
   const Vec3 center(mesh.positions[record.vertex]);
-  double largest = 0;
-  for (const SectorPatch& sector : record.sectors) largest = std::max(largest, sector_bound(mesh, sector, center));
-  if (record.sectors.size() == 1) return largest;
-  return std::min(largest, overlay_bound(make_overlay(mesh, record, center)));
+  double bound = 0;
+  for (const SectorPatch& sector : record.sectors) bound = std::max(bound, sector_bound(mesh, sector, center));
+  if (record.sectors.size() > 1) bound = std::min(bound, overlay_bound(make_overlay(mesh, record, center)));
+  if (bound < longest_spoke(mesh, record)) return bound;
+  std::vector<Triangle> fine;
+  std::vector<Triangle> coarse;
+  gather_faces(mesh, record, fine, coarse);
+  return std::min(bound, patch_distance_bound(fine, coarse));
 }
 
 }  // namespace lodestone::detail

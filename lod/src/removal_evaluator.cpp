@@ -24,7 +24,8 @@ constexpr std::size_t kFullyRanked = 3;  // triangulations, by swept volume, who
 constexpr double kForgiven = 0.7;        // share of the distances there were before that a removal is not charged for
 constexpr double kLeastCharged = 0.02;   // share of the distances after it that it is charged for in any case
 constexpr double kBridgeWeight = 3;      // of new surface where the star had none, against distances of points
-constexpr double kLineWeight = 1;        // of a border or crease that moves
+constexpr double kLineWeight = 1.5;      // of a border or crease that moves
+constexpr double kLeastLine = 1.5;       // of its distance, where a border or crease that moves is short
 constexpr double kMaterialWeight = 4;    // of a border between materials that moves: faces change their colour
 constexpr double kSeamWeight = 0.1;      // of a seam that moves: what counts there is the price of the attributes
 constexpr double kTieBreak = 0.2;        // weight of the volume swept, as a length, against a pure curvature error
@@ -731,8 +732,9 @@ double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
   return std::accumulate(nearest_.begin(), nearest_.end(), 0.0);
 }
 
-/// What borders and feature lines are charged for their own displacement: √(√A · D) each, with A the area it sweeps and
-/// D the distance of all its removed vertices to the new edge, a length.
+/// What borders and feature lines are charged for their own displacement: √(√A · D) each, a length, with A the area it
+/// sweeps and D the distance of all its removed vertices to the new edge; at least 1.5 D, which counts where the edge
+/// is short beside it, as at the tip of an ear.
 double RemovalEvaluator::line_cost(Index vertex) const {
   double sum = 0;
   for (const Line& line : lines_) {
@@ -746,7 +748,8 @@ double RemovalEvaluator::line_cost(Index vertex) const {
     if (line.carries_from) add_removed(line.from);
     add_removed(line.to);
     const double area = 0.5 * length(cross(a - center_, b - center_));
-    sum += line.weight * std::sqrt(std::sqrt(area) * std::sqrt(squared_distance));
+    const double distance = std::sqrt(squared_distance);
+    sum += line.weight * std::max(std::sqrt(std::sqrt(area) * distance), kLeastLine * distance);
   }
   return sum;
 }
