@@ -1,7 +1,8 @@
 // Alternates between looking for each sample's nearest face and moving the vertices, after Hoppe, DeRose, Duchamp,
 // McDonald, Stuetzle: Mesh optimization (SIGGRAPH 1993). Lines are fitted to lines, so that borders and features slide
-// along themselves. What would turn a face over stays where it was, and so does what would take one farther from the
-// original than any was at first: the samples do not see a face that leaves the surface.
+// along themselves. What would turn a face over, against what it was or against the original, stays where it was, and
+// so does what would take one farther from the original than any was at first: the samples do not see a face that
+// leaves the surface.
 
 #include <lodestone/lod/placement.h>
 
@@ -42,7 +43,13 @@ struct Effort {
 constexpr Effort kEffort = {1, 3, 0.985};
 constexpr Effort kEffortForFew = {3, 6, 0.998};
 
-constexpr std::size_t kPointsOfFace = 8;  // at which a face's distance from the original is looked up
+constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
+
+/// How a face stands to the original, by some of its points.
+struct Standing {
+  double distance;  // of the farthest
+  bool looks_away;  // from the original's faces, everywhere
+};
 
 class Fitting {
  public:
@@ -50,6 +57,7 @@ class Fitting {
       : level_(level),
         options_(options),
         original_(original),
+        original_index_(original),
         edges_(list_edges(level)),
         samples_(original, options.samples_per_face * level.face_count()),
         lines_(original) {
@@ -65,13 +73,14 @@ class Fitting {
   void assemble(SparseSystem& system) const;
   void add_lines(SparseSystem& system) const;
   void move();
-  double farthest(const Mesh& mesh, Index face) const;
+  Standing standing(const Mesh& mesh, Index face) const;
   double reach() const;
   bool keep_faces_near(std::vector<Vec3f>& positions) const;
 
   Mesh& level_;
   const PlacementOptions& options_;
-  SurfaceIndex original_;
+  const Mesh& original_;
+  SurfaceIndex original_index_;
   double reach_ = 0;  // how far a face may be from the original
   std::vector<MeshEdge> edges_;
   SurfaceSamples samples_;
@@ -173,29 +182,33 @@ void Fitting::move() {
   level_.positions = std::move(positions);
 }
 
-/// The distance from the original of a face, at some of its points.
-double Fitting::farthest(const Mesh& mesh, Index face) const {
-  double distance = 0;
+Standing Fitting::standing(const Mesh& mesh, Index face) const {
+  Standing result{0, true};
+  const Vec3 normal = area_vector(mesh, face);
   Index hint = kNoIndex;
   const auto look_at = [&](const Vec3& point) {
-    const SurfaceIndex::Hit hit = original_.nearest(point, std::numeric_limits<double>::infinity(), hint);
-    distance = std::max(distance, hit.distance);
+    const SurfaceIndex::Hit hit = original_index_.nearest(point, std::numeric_limits<double>::infinity(), hint);
+    result.distance = std::max(result.distance, hit.distance);
     hint = hit.face;
   };
   for (Index k = 0; k < 3; ++k) look_at(mesh.corner_position(3 * face + k));
-  for (std::size_t k = 0; k < kPointsOfFace; ++k) look_at(point_on_face(mesh, face, k));
-  return distance;
+  for (std::size_t k = 0; k < kPointsOfFace; ++k) {
+    look_at(point_on_face(mesh, face, k));
+    if (dot(normal, area_vector(original_, hint)) >= 0) result.looks_away = false;
+  }
+  return result;
 }
 
 /// How far the two surfaces are from each other now.
 double Fitting::reach() const {
   double distance = 0;
   for (const SurfaceSample& sample : samples_.all()) distance = std::max(distance, std::sqrt(sample.squared_distance));
-  for (Index f = 0; f < level_.face_count(); ++f) distance = std::max(distance, farthest(level_, f));
+  for (Index f = 0; f < level_.face_count(); ++f) distance = std::max(distance, standing(level_, f).distance);
   return distance;
 }
 
-/// Puts back vertices of faces that their new positions would take out of reach; returns whether there was none.
+/// Puts back vertices of faces that their new positions would take out of reach or turn away from the original; returns
+/// whether there was none.
 bool Fitting::keep_faces_near(std::vector<Vec3f>& positions) const {
   Mesh moved;
   moved.positions = positions;
@@ -207,7 +220,9 @@ bool Fitting::keep_faces_near(std::vector<Vec3f>& positions) const {
       const Index v = level_.corner_vertex(3 * f + k);
       return !(positions[v] == level_.positions[v]);
     };
-    if (!(is_moved(0) || is_moved(1) || is_moved(2)) || farthest(moved, f) <= reach_) continue;
+    if (!(is_moved(0) || is_moved(1) || is_moved(2))) continue;
+    const Standing now = standing(moved, f);
+    if (now.distance <= reach_ && (!now.looks_away || standing(level_, f).looks_away)) continue;
     all_near = false;
     for (Index k = 0; k < 3; ++k) {
       const Index v = level_.corner_vertex(3 * f + k);
