@@ -254,6 +254,25 @@ TEST_CASE("inspect describes any mesh") {
   CHECK_THAT(run_program({"inspect", shop.in}).out, contains("32 faces"));
 }
 
+TEST_CASE("compare takes as many samples as asked, and its maximum does not depend on them") {
+  const Workshop shop(bumpy_sphere());
+  REQUIRE(write_mesh(shop.folder / "smooth.ply", assemble(icosphere(2, 0, 7)).value().mesh));
+  const auto deviation = [&](const char* samples) {
+    const ProgramRun run =
+        run_program({"compare", shop.in, (shop.folder / "smooth.ply").string(), "--json", "--samples", samples});
+    REQUIRE(run.exit_code == 0);
+    return Json::parse(run.out)["deviation"];
+  };
+  const Json few = deviation("2000"), many = deviation("300000");
+  for (const char* way : {"forward", "backward"}) {
+    CHECK(few[way]["samples"].get<double>() == test::Approx(2000).epsilon(0.1));
+    CHECK(many[way]["samples"].get<double>() == test::Approx(300000).epsilon(0.1));
+    CHECK(few[way]["mean"].get<double>() == test::Approx(many[way]["mean"].get<double>()).epsilon(0.1));
+    CHECK(few[way]["max"] == many[way]["max"]);
+  }
+  CHECK(run_program({"compare", shop.in, shop.in, "--samples", "5"}).exit_code == 1);
+}
+
 TEST_CASE("compare is symmetric in its two directions") {
   const Workshop shop(bumpy_sphere());
   REQUIRE(write_mesh(shop.folder / "smooth.ply", assemble(icosphere(2, 0, 7)).value().mesh));

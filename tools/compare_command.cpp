@@ -25,6 +25,7 @@ namespace lodestone::tool {
 namespace {
 
 constexpr int kCompareSchemaVersion = 1;
+constexpr std::size_t kMostSamples = 1'000'000'000;
 
 struct Surface {
   std::string path;
@@ -140,6 +141,10 @@ void CompareCommand::add_to(CLI::App& app) {
   app.add_option("A", first, "Mesh file; percentages are of its bounding-box diagonal")->required()->type_name("FILE");
   app.add_option("B", second, "Mesh file")->required()->type_name("FILE");
   app.add_flag("--json", json, "Print JSON");
+  app.add_option("--samples", samples, "About so many samples of each surface for mean and rms; the maximum needs none")
+      ->type_name("COUNT")
+      ->check(CLI::Range(std::size_t{1000}, kMostSamples))
+      ->capture_default_str();
   app.add_option("--html", html, "Write a page that shows both surfaces, the errors and where these are")
       ->type_name("P.html");
   app.add_option("--heatmap", heatmap, "Write A coloured by its distance from B, as .ply or .glb")->type_name("X");
@@ -158,7 +163,9 @@ Result<Outcome> CompareCommand::run() const {
   const Result<Surface> b = read_surface(second);
   if (!b) return tl::unexpected(b.error());
   progress.start("measuring");
-  const Deviation deviation = measure_deviation(a->mesh, b->mesh);
+  DeviationOptions how;
+  how.sample_count = samples;
+  const Deviation deviation = measure_deviation(a->mesh, b->mesh, how);
   const double diagonal = bounding_box(a->mesh).diagonal();
   const Json comparison = comparison_json(*a, *b, deviation, diagonal);
 

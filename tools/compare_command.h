@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 
 #include <lodestone/core/result.h>
+#include <lodestone/lod/deviation.h>
 
 #include "command.h"
 
@@ -18,6 +20,7 @@ struct CompareCommand {
   std::filesystem::path first;
   std::filesystem::path second;
   bool json = false;
+  std::size_t samples = DeviationOptions{}.sample_count;  ///< of each surface, about
   std::optional<std::filesystem::path> html;
   std::optional<std::filesystem::path> heatmap;
 
