@@ -58,7 +58,7 @@ export async function extrasAgree(asset) {
 }
 
 async function openThree(site, asset, job) {
-  return withPage(site.browser, `${site.address}/pages/three.html`, async (page) => {
+  return withPage(site.browser, `${site.address}/pages/three.html?three.js`, async (page) => {
     await page.waitForFunction('window.ready');
     const nodes = asset.levels.map((level) => level.node);
     const loaded = await page.evaluate(([url, ids, draco]) => window.loadLevels(url, ids, draco),

@@ -110,7 +110,7 @@ async function main() {
   const { openPage } = await import('./browser.mjs');
   const options = readOptions();
   const site = await openSite(options);
-  const page = await openPage(site.browser, `${site.address}/pages/pictures.html`);
+  const page = await openPage(site.browser, `${site.address}/pages/three.html?pictures.js`);
   const studio = { page, url: site.url, output: options.output };
   const log = new Log();
   const assets = planAssets(options);

@@ -91,7 +91,7 @@ async function main() {
   const { openPage } = await import('./browser.mjs');
   const options = readOptions();
   const site = await openSite(options);
-  const page = await openPage(site.browser, `${site.address}/pages/poses.html`);
+  const page = await openPage(site.browser, `${site.address}/pages/three.html?poses.js`);
   const studio = { page, url: site.url, program: options.program, output: options.output };
   const log = new Log();
   const assets = planAssets(options);
