@@ -90,7 +90,7 @@ Result<SimplifyOptions> simplify_options(const BuildCommand& options) {
   return simplify;
 }
 
-Json settings_json(const BuildCommand& options, std::size_t level_count) {
+Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count) {
   Json json = {{"metric", options.metric},
                {"normalise", options.normalisation},
                {"reference", options.reference},
@@ -101,7 +101,7 @@ Json settings_json(const BuildCommand& options, std::size_t level_count) {
                {"lock_border", options.lock_border},
                {"vanish", options.vanish},
                {"crease_angle_degrees", options.crease_angle ? Json(*options.crease_angle) : Json(nullptr)},
-               {"weights", weights_json(simplify_options(options).value_or(SimplifyOptions{}).weights)},
+               {"weights", weights_json(weights)},
                {"importance", options.importance},
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", !options.no_stream && !has_file_per_level(options)},

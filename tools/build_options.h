@@ -23,7 +23,7 @@ void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene)
 /// Returns what the options say of every mesh alike. Errors: InvalidArgument for a weight that is none.
 Result<SimplifyOptions> simplify_options(const BuildCommand& options);
 
-/// Returns the options as understood, for the report.
-Json settings_json(const BuildCommand& options, std::size_t level_count);
+/// Returns the options as understood, for the report; `weights` are those of simplify_options.
+Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count);
 
 }  // namespace lodestone::tool

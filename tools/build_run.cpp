@@ -152,9 +152,9 @@ Result<Outcome> BuildRun::run() {
   if (!requested) return tl::unexpected(requested.error());
   targets_ = std::move(*requested);
   if (Result<void> paths = check_paths(options_, targets_.size() + 1); !paths) return tl::unexpected(paths.error());
-  report_.settings = settings_json(options_, targets_.size() + 1);
-
   if (Result<void> done = read_controls(); !done) return tl::unexpected(done.error());
+  report_.settings = settings_json(options_, common_options_.weights, targets_.size() + 1);
+
   if (Result<void> done = read(); !done) return tl::unexpected(done.error());
   if (Result<void> done = simplify_meshes(); !done) return tl::unexpected(done.error());
   make_levels();

@@ -98,10 +98,11 @@ Result<Heatmap> make_heatmap(const std::filesystem::path& path, const Surface& a
   const SurfaceIndex surface(b.mesh);
   const std::vector<float> errors = vertex_errors(a.mesh, surface);
   const double largest = *std::max_element(errors.begin(), errors.end());
-  const double upper = measure_spread(a.mesh, surface, largest).nearly_all;
-  Result<std::vector<std::byte>> bytes = encode_heatmap(path, a.mesh, errors, upper > 0 ? upper : largest);
+  const double nearly_all = measure_spread(a.mesh, surface, largest).nearly_all;
+  const double upper = nearly_all > 0 ? nearly_all : largest;
+  Result<std::vector<std::byte>> bytes = encode_heatmap(path, a.mesh, errors, upper);
   if (!bytes) return tl::unexpected(bytes.error());
-  return Heatmap{std::move(*bytes), upper > 0 ? upper : largest};
+  return Heatmap{std::move(*bytes), upper};
 }
 
 Result<void> check_output(const char* option, const std::filesystem::path& path, const CompareCommand& options) {

@@ -1,9 +1,6 @@
 #include "heatmap.h"
 
-#include <algorithm>
-#include <cstring>
-#include <string>
-#include <utility>
+#include <cstdint>
 
 #include <lodestone/io/write_mesh.h>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -56,37 +57,26 @@ Box box_around(const std::vector<Mesh>& meshes) {
   return all;
 }
 
-std::string escaped(std::string_view text) {
+/// Returns the text with some of its characters spelt otherwise.
+std::string respelt(std::string_view text, std::initializer_list<std::pair<char, std::string_view>> spellings) {
   std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
+  for (const char& c : text) {
+    std::string_view spelling(&c, 1);
+    for (const auto& [character, other] : spellings)
+      if (character == c) spelling = other;
+    out += spelling;
   }
   return out;
 }
 
+std::string escaped(std::string_view text) {
+  return respelt(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
+}
+
 /// JSON that may stand in a <script>: no tag can begin or end within it.
 std::string script_json(const Json& json) {
-  std::string out;
-  for (const char c : json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace)) {
-    if (c == '<')
-      out += "\\u003c";
-    else if (c == '>')
-      out += "\\u003e";
-    else if (c == '&')
-      out += "\\u0026";
-    else
-      out += c;
-  }
-  return out;
+  return respelt(json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace),
+                 {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}});
 }
 
 /// Collects what the page embeds: small things as JSON, geometry and errors as scripts of their own that are read

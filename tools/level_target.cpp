@@ -33,9 +33,8 @@ LevelTarget resolve(const LevelTarget& target, const FullSize& full) {
 LevelChoice choose_level(const ProgressiveMesh& mesh, const LevelTarget& target, StopReason end) {
   LevelChoice choice{target, position_for(mesh, target), true, std::string(name_of(target.kind))};
   if (choice.position > 0) return choice;
-  const std::size_t base_faces = face_counts(mesh).front();
   if (target.kind == TargetKind::Faces) {
-    choice.met = static_cast<double>(base_faces) <= target.value;
+    choice.met = static_cast<double>(face_counts(mesh).front()) <= target.value;
     if (choice.met) return choice;
   }
   choice.stopped_by = name_of(end);

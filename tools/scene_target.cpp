@@ -30,6 +30,20 @@ class FaceBudget {
     }
   }
 
+  /// Returns the faces that are drawn with every part at full detail.
+  std::size_t drawn() const {
+    std::size_t faces = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) faces += faces_[i].back() * parts_[i].instance_count;
+    return faces;
+  }
+
+  /// Returns the faces that are drawn at the positions given.
+  std::size_t drawn(std::span<const Index> positions) const {
+    std::size_t faces = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) faces += faces_[i][positions[i]] * parts_[i].instance_count;
+    return faces;
+  }
+
   /// Returns the positions within the budget, or the coarsest ones where even those exceed it.
   std::vector<Index> share(double budget) const {
     std::vector<double> thresholds;
@@ -52,12 +66,6 @@ class FaceBudget {
           std::partition_point(errors.begin(), errors.end(), [&](double e) { return e > threshold; }) -
           errors.begin()));
     return positions;
-  }
-
-  std::size_t drawn(const std::vector<Index>& positions) const {
-    std::size_t faces = 0;
-    for (std::size_t i = 0; i < parts_.size(); ++i) faces += faces_[i][positions[i]] * parts_[i].instance_count;
-    return faces;
   }
 
   /// Refines the worst part again and again, as long as its next record fits; leaves no part with half a piece.
@@ -99,7 +107,8 @@ double diagonal_of(const ProgressiveMesh& mesh) {
 
 /// Answers a target that is relative to the part itself; errors are world units.
 LevelChoice choose_for_part(const ScenePart& part, const LevelTarget& target) {
-  FullSize full{face_counts(*part.mesh).back(), 0};
+  FullSize full;
+  if (target.relative && target.kind == TargetKind::Faces) full.face_count = face_counts(*part.mesh).back();
   if (target.relative && target.kind == TargetKind::Error) full.diagonal = diagonal_of(*part.mesh);
   LevelTarget absolute = resolve(target, full);
   if (target.kind == TargetKind::Error && !target.relative) absolute.value /= part.scale;
@@ -121,26 +130,14 @@ SceneChoice choose_each(std::span<const ScenePart> parts, const LevelTarget& tar
 
 }  // namespace
 
-std::size_t drawn_faces(std::span<const ScenePart> parts) {
-  std::size_t faces = 0;
-  for (const ScenePart& part : parts) faces += face_counts(*part.mesh).back() * part.instance_count;
-  return faces;
-}
-
-std::size_t drawn_faces(std::span<const ScenePart> parts, std::span<const Index> positions) {
-  std::size_t faces = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    faces += face_counts(*parts[i].mesh)[positions[i]] * parts[i].instance_count;
-  return faces;
-}
-
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal) {
   if (scope == TargetScope::Mesh) return choose_each(parts, target);
-  const LevelTarget absolute = resolve(target, {drawn_faces(parts), diagonal});
-  if (absolute.kind != TargetKind::Faces) return choose_each(parts, absolute);
-  SceneChoice choice{absolute, FaceBudget(parts).share(absolute.value), true, std::string(name_of(absolute.kind))};
-  choice.met = static_cast<double>(drawn_faces(parts, choice.positions)) <= absolute.value;
+  if (target.kind != TargetKind::Faces) return choose_each(parts, resolve(target, {0, diagonal}));
+  const FaceBudget budget(parts);
+  const LevelTarget absolute = resolve(target, {budget.drawn(), diagonal});
+  SceneChoice choice{absolute, budget.share(absolute.value), true, std::string(name_of(absolute.kind))};
+  choice.met = static_cast<double>(budget.drawn(choice.positions)) <= absolute.value;
   if (!choice.met) choice.stopped_by = parts.empty() ? "stuck" : name_of(parts[0].end);
   return choice;
 }

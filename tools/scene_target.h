@@ -20,7 +20,8 @@ struct ScenePart {
   std::size_t instance_count = 1;  ///< how often it is drawn
   StopReason end = StopReason::Stuck;
   double importance = 1;  ///< where parts share faces: multiplies what its faces are worth
-  /// By position, falling from coarse to fine: what is lost there, in a unit that all parts share. Empty: the deviation.
+  /// By position, falling from coarse to fine: what is lost there, in a unit that all parts share. Empty: the
+  /// deviation.
   std::vector<double> loss;
 };
 
@@ -38,13 +39,9 @@ struct SceneChoice {
   std::string stopped_by;  ///< why the level is no coarser: faces, error, epsilon; or stuck
 };
 
-/// Returns the faces that are drawn with every part at full detail, or at the positions given.
-std::size_t drawn_faces(std::span<const ScenePart> parts);
-std::size_t drawn_faces(std::span<const ScenePart> parts, std::span<const Index> positions);
-
-/// Finds the positions that answer a target. Faces go where they are worth most: all parts get the coarsest level within
-/// one loss, the smallest for which the faces suffice, and what is left goes to whichever part has lost most. `diagonal`
-/// is the scene's.
+/// Finds the positions that answer a target. Faces go where they are worth most: all parts get the coarsest level
+/// within one loss, the smallest for which the faces suffice, and what is left goes to whichever part has lost most.
+/// `diagonal` is the scene's.
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal);
 

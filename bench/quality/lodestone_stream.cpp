@@ -1,6 +1,6 @@
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/placement.h>
@@ -10,14 +10,13 @@
 #include "simplifier.h"
 
 namespace lodestone::bench {
+namespace {
 
-std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts) {
-  return lodestone_stream(mesh, face_counts, {});
-}
-
-std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::size_t> face_counts) {
-  SimplifyOptions options;
-  options.measure_step = 0;
+/// Simplifies to the base mesh once and takes every level out of the stream, fitted to the original or as it is: each
+/// has the CPU time of the whole, and of its own fitting.
+std::vector<Level> levels_of(const Mesh& mesh, std::span<const std::size_t> face_counts, SimplifyOptions options,
+                             bool fitted) {
+  options.measure_step = 0;  // Bounds on each record are no part of what peers do, and change no removal.
   const CpuClock clock;
   const Result<SimplifyResult> simplified = simplify(mesh, options);
   const double simplify_seconds = clock.seconds();
@@ -30,29 +29,26 @@ std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::s
   for (const std::size_t faces : face_counts) {
     cursor.seek(position_for_faces(simplified->mesh, faces));
     const CpuClock fitting;
-    const Mesh fitted = optimise_placement(mesh, extract_level(simplified->mesh, cursor));
-    levels.push_back({surface_of(fitted), simplify_seconds + fitting.seconds()});
+    Mesh level = extract_level(simplified->mesh, cursor);
+    if (fitted) level = optimise_placement(mesh, level);
+    levels.push_back({surface_of(level), simplify_seconds + (fitted ? fitting.seconds() : 0)});
   }
   return levels;
 }
 
+}  // namespace
+
+std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::size_t> face_counts) {
+  return levels_of(mesh, face_counts, {}, true);
+}
+
+std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts) {
+  return lodestone_stream(mesh, face_counts, {});
+}
+
 std::vector<Level> lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts,
                                     SimplifyOptions options) {
-  options.measure_step = 0;  // Bounds on each record are no part of what peers do, and change no removal.
-  const CpuClock clock;
-  const Result<SimplifyResult> simplified = simplify(mesh, options);
-  const double cpu_seconds = clock.seconds();
-  if (!simplified) {
-    std::fprintf(stderr, "lodestone: %s\n", simplified.error().message.c_str());
-    std::exit(1);
-  }
-  std::vector<Level> levels;
-  Cursor cursor(simplified->mesh);
-  for (const std::size_t faces : face_counts) {
-    cursor.seek(position_for_faces(simplified->mesh, faces));
-    levels.push_back({surface_of(extract_level(simplified->mesh, cursor)), cpu_seconds});
-  }
-  return levels;
+  return levels_of(mesh, face_counts, std::move(options), false);
 }
 
 }  // namespace lodestone::bench

@@ -58,8 +58,7 @@ export async function extrasAgree(asset) {
 }
 
 async function openThree(site, asset, job) {
-  return withPage(site.browser, `${site.address}/pages/three.html`, async (page) => {
-    await page.waitForFunction('window.ready');
+  return withPage(site.browser, `${site.address}/pages/three.html?three.js`, async (page) => {
     const nodes = asset.levels.map((level) => level.node);
     const loaded = await page.evaluate(([url, ids, draco]) => window.loadLevels(url, ids, draco),
       [asset.url, nodes, asset.draco]);
@@ -88,10 +87,8 @@ export async function takesPictures(site, asset) {
 }
 
 async function openBabylon(site, url, useRangeRequests) {
-  return withPage(site.browser, `${site.address}/pages/babylon.html`, async (page) => {
-    await page.waitForFunction('window.ready');
-    return page.evaluate(([file, ranges]) => window.loadProgressively(file, ranges), [url, useRangeRequests]);
-  });
+  return withPage(site.browser, `${site.address}/pages/babylon.html`, (page) =>
+    page.evaluate(([file, ranges]) => window.loadProgressively(file, ranges), [url, useRangeRequests]));
 }
 
 /** Babylon.js loads every level and ends with the finest. With the whole file at hand, levels may pass before it tells. */

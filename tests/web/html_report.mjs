@@ -4,14 +4,13 @@
 //   node html_report.mjs --output FOLDER PAGE.html …           check pages that are there already
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { existsSync } from 'node:fs';
 import { mkdir, stat } from 'node:fs/promises';
-import { basename, dirname, join, resolve } from 'node:path';
-import { fileURLToPath, pathToFileURL } from 'node:url';
-import { parseArgs, promisify } from 'node:util';
+import { basename, join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { promisify } from 'node:util';
+import { Log, openBrowser, readOptions, repository } from './suite.mjs';
 
-const here = dirname(fileURLToPath(import.meta.url));
-const demoModel = join(here, '..', '..', 'demo', 'suzi.glb');
+const demoModel = join(repository, 'demo', 'suzi.glb');
 
 const VIEWS = [
   { name: 'light', viewport: { width: 1280, height: 900 }, colorScheme: 'light' },
@@ -20,19 +19,8 @@ const VIEWS = [
   { name: 'phone-dark', viewport: { width: 390, height: 844 }, colorScheme: 'dark', isMobile: true, hasTouch: true },
 ];
 
-const { values: options, positionals } = parseArgs({
-  allowPositionals: true,
-  options: { program: { type: 'string' }, output: { type: 'string' } },
-});
-
-/** Ends a run that cannot happen on this machine: a failure where the project's own tests run, a remark elsewhere. */
-function stopWithout(what) {
-  console.log(process.env.CI ? `FAILED: ${what}` : `SKIPPED: ${what}`);
-  process.exit(process.env.CI ? 1 : 0);
-}
-
-async function writePages(output) {
-  const run = (...args) => promisify(execFile)(options.program, args);
+async function writePages({ program, output }) {
+  const run = (...args) => promisify(execFile)(program, args);
   const files = ['report-build.html', 'report-compare.html'].map((name) => join(output, name));
   const asset = join(output, 'report-suzi.glb'), level = join(output, 'report-level.glb');
   await run('build', demoModel, '-o', asset, '--html', files[0], '--quiet');
@@ -149,42 +137,37 @@ function takesPicture(path) {
   return (page) => page.screenshot({ path, fullPage: true }).then(() => path);
 }
 
-async function main() {
-  if (!existsSync(join(here, 'node_modules', 'playwright-core'))) stopWithout('no web clients: run npm ci in tests/web');
-  const { findBrowser, launchBrowser } = await import('./browser.mjs');
-  const browserPath = findBrowser();
-  if (!browserPath) stopWithout('no Chromium on this machine');
-  const output = resolve(options.output ?? 'build/web');
-  await mkdir(output, { recursive: true });
-  const files = positionals.length > 0 ? positionals.map((file) => resolve(file)) : await writePages(output);
-  const browser = await launchBrowser(browserPath);
-  let failed = 0;
-  const report = async (what, check) => {
-    try {
-      console.log(`ok     ${what}: ${await check()}`);
-    } catch (error) {
-      console.log(`FAILED ${what}: ${error.message}`);
-      ++failed;
-    }
+/** Runs the checks of one page as one reader sees it; the last is that it never complained. */
+async function checkView(log, browser, file, view, output) {
+  const name = basename(file, '.html');
+  const checks = {
+    takesPicture: takesPicture(join(output, `${name}-${view.name}.png`)),
+    fits,
+    ...(view.name === 'light' && { unpacks, drawsAndTurns, choosesLevels }),
   };
+  const subject = `${name} ${view.name}`;
+  await log.run(subject, {
+    'no complaints': async () => {
+      const problems = await open(browser, file, view, (page) => log.run(subject, Object.fromEntries(
+        Object.entries(checks).map(([what, check]) => [what, () => check(page)]))));
+      assert.deepEqual(problems, []);
+      return 'none';
+    },
+  });
+}
+
+async function main() {
+  const options = readOptions();
+  const browser = await openBrowser();
+  await mkdir(options.output, { recursive: true });
+  const files = options.files.length > 0 ? options.files.map((file) => resolve(file)) : await writePages(options);
+  const log = new Log();
   for (const file of files) {
-    const name = basename(file, '.html');
-    for (const view of VIEWS) {
-      const checks = { takesPicture: takesPicture(join(output, `${name}-${view.name}.png`)), fits,
-        ...(view.name === 'light' && { unpacks, drawsAndTurns, choosesLevels }) };
-      await report(`${name} ${view.name}: no complaints`, async () => {
-        const problems = await open(browser, file, view, async (page) => {
-          for (const [what, check] of Object.entries(checks)) await report(`${name} ${view.name}: ${what}`, () => check(page));
-        });
-        assert.deepEqual(problems, []);
-        return 'none';
-      });
-    }
-    console.log(`       ${name}: ${(await stat(file)).size} bytes`);
+    for (const view of VIEWS) await checkView(log, browser, file, view, options.output);
+    console.log(`       ${basename(file, '.html')}: ${(await stat(file)).size} bytes`);
   }
   await browser.close();
-  console.log(failed === 0 ? 'all passed' : `${failed} failed`);
-  process.exitCode = failed === 0 ? 0 : 1;
+  log.close();
 }
 
 await main();

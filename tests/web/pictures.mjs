@@ -9,7 +9,7 @@ import { dirname, join } from 'node:path';
 import { planAssets } from './assets.mjs';
 import { openCracks, scrambleTextures } from './damage.mjs';
 import { lodChains, parseGlb } from './glb.mjs';
-import { Log, openSite, readOptions, requireClients, skip } from './suite.mjs';
+import { Log, openSite, readOptions, skip } from './suite.mjs';
 
 const subjects = ['suzi', 'tube', 'spot_triangulated', 'FlightHelmet', 'SheenCloth', 'Lantern_nobasecolor', 'cakeBirthday',
   'RobotExpressive', 'Knight'];
@@ -106,11 +106,10 @@ async function checkAsset(log, studio, asset, plain) {
 }
 
 async function main() {
-  requireClients();
-  const { openPage } = await import('./browser.mjs');
   const options = readOptions();
   const site = await openSite(options);
-  const page = await openPage(site.browser, `${site.address}/pages/pictures.html`);
+  const { openPage } = await import('./browser.mjs');
+  const page = await openPage(site.browser, `${site.address}/pages/three.html?pictures.js`);
   const studio = { page, url: site.url, output: options.output };
   const log = new Log();
   const assets = planAssets(options);

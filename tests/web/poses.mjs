@@ -8,7 +8,7 @@ import { writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { promisify } from 'node:util';
 import { planAssets } from './assets.mjs';
-import { Log, openSite, readOptions, requireClients, skip } from './suite.mjs';
+import { Log, openSite, readOptions, skip } from './suite.mjs';
 
 // What moves in each, and so is worth posing; `targets` is how many morph targets to turn on, one at a time. The tube is
 // straight at rest where it bends, and so its levels' ratios are large: they may lie `slack` farther off, which joints or
@@ -87,11 +87,10 @@ async function checkSubject(log, studio, { name, animations, targets, slack = us
 }
 
 async function main() {
-  requireClients();
-  const { openPage } = await import('./browser.mjs');
   const options = readOptions();
   const site = await openSite(options);
-  const page = await openPage(site.browser, `${site.address}/pages/poses.html`);
+  const { openPage } = await import('./browser.mjs');
+  const page = await openPage(site.browser, `${site.address}/pages/three.html?poses.js`);
   const studio = { page, url: site.url, program: options.program, output: options.output };
   const log = new Log();
   const assets = planAssets(options);

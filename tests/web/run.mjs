@@ -5,7 +5,7 @@
 import { basename, dirname, resolve } from 'node:path';
 import { planAssets } from './assets.mjs';
 import { readLevels } from './glb.mjs';
-import { Log, openSite, readOptions, requireClients } from './suite.mjs';
+import { Log, openSite, readOptions } from './suite.mjs';
 
 /** Returns a one-mesh file with what it says of its levels. */
 async function describe(site, path) {
@@ -37,13 +37,11 @@ function checksOfScene(checks, viewers, pages, asset) {
 }
 
 async function main() {
-  requireClients();
   const options = readOptions();
-  const checks = await import('./checks.mjs');
-  const viewers = await import('./viewers.mjs');
-
   const given = options.files.map((file) => resolve(file));
   const site = await openSite({ ...options, assets: given.length > 0 ? dirname(given[0]) : options.output });
+  const checks = await import('./checks.mjs');
+  const viewers = await import('./viewers.mjs');
   const log = new Log();
   const planned = given.length > 0 ? [] : planAssets(options);
   const meshes = planned.filter(({ kind }) => kind === 'mesh').map(({ path }) => path);

@@ -23,7 +23,7 @@ export function readOptions() {
 }
 
 /** Ends a run that cannot happen on this machine: a failure where the project's own tests run, a remark elsewhere. */
-export function stopWithout(what) {
+function stopWithout(what) {
   console.log(process.env.CI ? `FAILED: ${what}` : `SKIPPED: ${what}`);
   process.exit(process.env.CI ? 1 : 0);
 }
@@ -33,22 +33,23 @@ export function skip(what) {
   console.log(`SKIPPED ${what}: no such model on this machine`);
 }
 
-export function requireClients() {
+/** Starts the browser that all clients run in. */
+export async function openBrowser() {
   if (!existsSync(join(here, 'node_modules', 'three'))) stopWithout('no web clients: run npm ci in tests/web');
+  const { findBrowser, launchBrowser } = await import('./browser.mjs');
+  const path = findBrowser();
+  if (!path) stopWithout('no Chromium on this machine');
+  return launchBrowser(path);
 }
 
 /** Serves the clients, the pages, `assets` and the models to a browser; `url` gives the address of a file of theirs. */
 export async function openSite({ output, models, assets = output }) {
-  requireClients();
-  const { findBrowser, launchBrowser } = await import('./browser.mjs');
-  const browserPath = findBrowser();
-  if (!browserPath) stopWithout('no Chromium on this machine');
+  const browser = await openBrowser();
   await mkdir(output, { recursive: true });
   const mounts = {
     node_modules: join(here, 'node_modules'), pages: join(here, 'pages'), assets, models, demo: join(repository, 'demo'),
   };
   const server = await serve(mounts);
-  const browser = await launchBrowser(browserPath);
   return {
     address: server.address,
     ranges: server.ranges,

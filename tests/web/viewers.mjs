@@ -7,7 +7,7 @@ import { parseGlb, trianglesOfScene } from './glb.mjs';
 /** Opens one page of each viewer for many files: the viewers themselves take longer to load than most files. */
 export async function openViewers(site) {
   return {
-    three: await openPage(site.browser, `${site.address}/pages/viewer.html`),
+    three: await openPage(site.browser, `${site.address}/pages/three.html?viewer.js`),
     babylon: await openPage(site.browser, `${site.address}/pages/babylon.html`),
   };
 }

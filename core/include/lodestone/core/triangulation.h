@@ -26,8 +26,4 @@ std::span<const PolygonTriangle> triangulation(int size, int which);
 /// C(c,3) + C(b,2) + a, which does not depend on the polygon's size.
 constexpr int triangle_number(PolygonTriangle t) { return t.c * (t.c - 1) * (t.c - 2) / 6 + t.b * (t.b - 1) / 2 + t.a; }
 
-/// Triangles of the largest tabulated polygon.
-inline constexpr int kTriangleNumberCount =
-    kMaxTabulatedPolygon * (kMaxTabulatedPolygon - 1) * (kMaxTabulatedPolygon - 2) / 6;
-
 }  // namespace lodestone
