@@ -13,6 +13,7 @@
 #include "attribute_cost.h"
 #include "finite_values.h"
 #include "constrained_edges.h"
+#include "grouping.h"
 #include "triangle.h"
 
 namespace lodestone::detail {
@@ -32,12 +33,12 @@ struct SurfacePlace {
 /// The original surface, to walk on without crossing seams.
 class SeamedSurface {
  public:
-  explicit SeamedSurface(const Mesh& mesh) : mesh_(mesh), across_(mesh.corner_wedge.size(), kNoIndex) {
+  explicit SeamedSurface(const Mesh& mesh)
+      : mesh_(mesh),
+        across_(mesh.corner_wedge.size(), kNoIndex),
+        wedge_corners_(mesh.wedge_count(), mesh.corner_wedge.size(), [&](Index c) { return mesh.corner_wedge[c]; }) {
     for (const MeshEdge& edge : list_edges(mesh))
       if (!edge.constrained) across_[edge.corners[0]] = edge.corners[1], across_[edge.corners[1]] = edge.corners[0];
-    wedge_corners_.resize(mesh.corner_wedge.size());
-    for (Index c = 0; c < wedge_corners_.size(); ++c) wedge_corners_[c] = {mesh.corner_wedge[c], c};
-    std::sort(wedge_corners_.begin(), wedge_corners_.end());
   }
 
   /// Walks from the faces at a wedge towards `p`, nearest faces first, until it comes no nearer.
@@ -51,9 +52,7 @@ class SeamedSurface {
       entry->second = nearest_weights(p, triangle_of(mesh_, face));
       waiting.emplace(entry->second.squared_distance, face);
     };
-    for (auto it = std::lower_bound(wedge_corners_.begin(), wedge_corners_.end(), std::pair(wedge, Index{0}));
-         it != wedge_corners_.end() && it->first == wedge; ++it)
-      visit(face_of_corner(it->second));
+    for (const Index corner : wedge_corners_[wedge]) visit(face_of_corner(corner));
     SurfacePlace best;
     double least = std::numeric_limits<double>::infinity();
     for (int patience = kPatience; !waiting.empty() && patience > 0; --patience) {
@@ -73,7 +72,7 @@ class SeamedSurface {
  private:
   const Mesh& mesh_;
   std::vector<Index> across_;
-  std::vector<std::pair<Index, Index>> wedge_corners_;
+  Grouping wedge_corners_;
 };
 
 bool same_bytes(const Mesh& a, Index wedge_a, const Mesh& b, Index wedge_b) {
