@@ -10,10 +10,10 @@
 #include <tuple>
 #include <vector>
 
-#include "attribute_cost.h"
 #include "finite_values.h"
 #include "constrained_edges.h"
 #include "grouping.h"
+#include "texture_areas.h"
 #include "triangle.h"
 
 namespace lodestone::detail {
@@ -165,15 +165,14 @@ void copy_wedge(const Mesh& from, Mesh& to, Index wedge) {
 
 /// Puts vertices back at whose faces a texture has turned over; returns whether there were any.
 bool put_back_turned(const Mesh& before, const std::vector<std::vector<int>>& orientation, Mesh& level) {
-  const AttributeCost textures(level, {0, 0, 0, 0, 0});
+  const TextureAreas textures(level);
   std::vector<std::uint8_t> back(level.vertex_count(), 0);
   bool any = false;
-  for (std::size_t t = 0; t < textures.texture_count(); ++t)
+  for (std::size_t t = 0; t < textures.count(); ++t)
     for (Index f = 0; f < level.face_count(); ++f) {
-      const Index* wedge = &level.corner_wedge[3 * std::size_t{f}];
-      if (textures.texture_area(t, wedge[0], wedge[1], wedge[2]) * orientation[t][f] >= 0) continue;
+      if (textures.area(t, level, f) * orientation[t][f] >= 0) continue;
       for (Index k = 0; k < 3; ++k) {
-        const Index v = level.wedge_vertex[wedge[k]];
+        const Index v = level.corner_vertex(3 * f + k);
         if (level.positions[v] == before.positions[v]) continue;
         back[v] = 1;
         any = true;
@@ -188,12 +187,11 @@ bool put_back_turned(const Mesh& before, const std::vector<std::vector<int>>& or
 
 /// The sign of every face's area in every texture, with the attributes of `before` on the faces of `level`.
 std::vector<std::vector<int>> orientations(const Mesh& before, const Mesh& level) {
-  const AttributeCost textures(before, {0, 0, 0, 0, 0});
-  std::vector<std::vector<int>> signs(textures.texture_count());
+  const TextureAreas textures(before);
+  std::vector<std::vector<int>> signs(textures.count());
   for (std::size_t t = 0; t < signs.size(); ++t)
     for (Index f = 0; f < level.face_count(); ++f) {
-      const Index* wedge = &level.corner_wedge[3 * std::size_t{f}];
-      const double area = textures.texture_area(t, wedge[0], wedge[1], wedge[2]);
+      const double area = textures.area(t, level, f);
       signs[t].push_back(area > 0 ? 1 : area < 0 ? -1 : 0);
     }
   return signs;

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "attribute_cost.h"
 #include "face_guard.h"
 #include "grouping.h"
+#include "texture_areas.h"
 #include "triangle.h"
 
 namespace lodestone::detail {
@@ -21,7 +21,7 @@ class EdgeTurner {
         edges_(edges),
         samples_(samples),
         samples_of_face_(mesh.face_count(), samples.size(), [&](Index i) { return samples[i].face; }),
-        attributes_(mesh, {0, 0, 0, 0, 0}) {}
+        textures_(mesh) {}
 
   std::size_t run() {
     std::size_t count = 0;
@@ -83,10 +83,9 @@ class EdgeTurner {
   }
 
   bool turns_texture(const Quad& q) const {
-    for (std::size_t t = 0; t < attributes_.texture_count(); ++t) {
-      const double before = attributes_.texture_area(t, q.a, q.b, q.c) + attributes_.texture_area(t, q.b, q.a, q.d);
-      if (before * attributes_.texture_area(t, q.a, q.d, q.c) < 0) return true;
-      if (before * attributes_.texture_area(t, q.d, q.b, q.c) < 0) return true;
+    for (std::size_t t = 0; t < textures_.count(); ++t) {
+      const double before = textures_.area(t, q.a, q.b, q.c) + textures_.area(t, q.b, q.a, q.d);
+      if (before * textures_.area(t, q.a, q.d, q.c) < 0 || before * textures_.area(t, q.d, q.b, q.c) < 0) return true;
     }
     return false;
   }
@@ -111,7 +110,7 @@ class EdgeTurner {
   std::span<const MeshEdge> edges_;
   std::span<const SurfaceSample> samples_;
   Grouping samples_of_face_;
-  AttributeCost attributes_;
+  TextureAreas textures_;
   std::vector<std::uint8_t> taken_;
   std::vector<std::pair<Index, Index>> added_;
 };
