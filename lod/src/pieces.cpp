@@ -38,7 +38,6 @@ Pieces::Pieces(const Mesh& mesh, const Connectivity& connectivity) : piece_(mesh
   vertices_ = Grouping(count, piece_.size(), [&](Index v) { return piece_[v]; });
   face_count_.assign(count, 0);
   for (Index f = 0; f < mesh.face_count(); ++f) ++face_count_[piece_[mesh.corner_vertex(3 * f)]];
-  full_face_count_ = face_count_;
   for (const std::size_t faces : face_count_) left_ += faces > 0 ? 1 : 0;
 }
 
@@ -50,7 +49,7 @@ double Pieces::loss(const Mesh& mesh, Index piece) const {
   double squares = 0;
   for (const Index v : members) squares += squared_length(Vec3(mesh.positions[v]) - center);
   const double width = 2 * std::sqrt(squares / static_cast<double>(members.size()));
-  return width * std::sqrt(static_cast<double>(members.size() + full_face_count_[piece]));
+  return width * std::sqrt(static_cast<double>(members.size() + face_count_[piece]));
 }
 
 }  // namespace lodestone::detail

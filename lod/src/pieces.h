@@ -31,13 +31,13 @@ class Pieces {
 
   /// What the loss of a piece is charged for, a length that compares with the distance sums of removals: all of the
   /// points it stands for are lost, each as far as the piece is wide.
+  /// Pre: it has lost no faces.
   double loss(const Mesh& mesh, Index piece) const;
 
  private:
   std::vector<Index> piece_;  // by vertex
   Grouping vertices_;
   std::vector<std::size_t> face_count_;
-  std::vector<std::size_t> full_face_count_;
   std::size_t left_ = 0;
 };
 
