@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
-#include "finite_values.h"
 #include "constrained_edges.h"
+#include "finite_values.h"
 #include "grouping.h"
 #include "texture_areas.h"
 #include "triangle.h"
@@ -141,8 +141,7 @@ void blend(const Mesh& original, const std::vector<float>& values, const Surface
   std::array<double, 16> sum{};
   for (Index k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < width; ++i)
-      sum[i] += place.weights[k] *
-                static_cast<double>(values[original.corner_wedge[3 * place.face + k] * width + i]);
+      sum[i] += place.weights[k] * static_cast<double>(values[original.corner_wedge[3 * place.face + k] * width + i]);
   const bool is_direction = (attribute.name == "NORMAL" || attribute.name == "TANGENT") && width >= 3;
   if (is_direction) {
     const double norm = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
@@ -204,7 +203,8 @@ void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
   const SeamedSurface surface(original);
   const WedgeFinder finder(original);
   std::vector<std::vector<float>> values;
-  for (const Attribute& a : original.attributes) values.push_back(is_skinning(a) ? std::vector<float>() : finite_values(a));
+  for (const Attribute& a : original.attributes)
+    values.push_back(is_skinning(a) ? std::vector<float>() : finite_values(a));
   for (Index w = 0; w < level.wedge_count(); ++w) {
     const Index v = level.wedge_vertex[w];
     if (level.positions[v] == before.positions[v]) continue;
