@@ -7,17 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "finite_values.h"
 
 namespace lodestone::detail {
-namespace {
-
-bool ends_with(std::string_view name, std::string_view end) {
-  return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
-}
-
-}  // namespace
 
 AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) : textures_(mesh) {
   std::size_t texture = 0;
@@ -27,7 +21,7 @@ AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) 
     if (TextureAreas::is_texture(attribute)) add_texture(texture++, weights.texcoord);
     if (name.starts_with("COLOR_")) add_channel(attribute, Kind::Value, weights.color);
     if (name.starts_with("JOINTS_")) add_skin(mesh, attribute, weights.skin);
-    if (name.starts_with("TARGET_") && ends_with(name, ":POSITION"))
+    if (name.starts_with("TARGET_") && name.ends_with(":POSITION"))
       add_channel(attribute, Kind::Displacement, weights.target);
   }
 }

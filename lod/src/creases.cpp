@@ -1,7 +1,5 @@
 #include "creases.h"
 
-#include <cmath>
-
 #include "texture_areas.h"
 
 namespace lodestone::detail {
