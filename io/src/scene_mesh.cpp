@@ -139,9 +139,9 @@ Result<std::optional<JoinedMesh>> join_primitives(const GltfDocument& document, 
     joined.mesh.has_targets |= described.target_count > 0;
     append_primitive(primitive, joined, soup);
   }
+  if (soup.indices.empty()) return std::optional<JoinedMesh>();
   complete_attributes(joined.source, soup);
   LODESTONE_TRY(AssembledMesh assembled, assemble(soup));
-  if (assembled.mesh.face_count() == 0 && soup.indices.empty()) return std::optional<JoinedMesh>();
   joined.mesh.name = string_member(*json, "name");
   joined.mesh.mesh = std::move(assembled.mesh);
   joined.mesh.assembly = assembled.report;

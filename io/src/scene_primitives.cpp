@@ -112,7 +112,7 @@ class GeometryWriter {
     count(mesh.face_count(), mesh.wedge_count());
     PrimitiveGeometry geometry = write_vertices(primitive, mesh);
     geometry.indices = add_indices(builder_, mesh.corner_wedge, mesh.wedge_count());
-    if (options_.measure) note_decoded(primitive, group.material, mesh);
+    if (options_.measure && options_.draco) note_decoded(primitive, group.material, mesh);
     return geometry;
   }
 

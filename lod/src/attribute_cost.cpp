@@ -7,36 +7,31 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "finite_values.h"
 
 namespace lodestone::detail {
-namespace {
 
-bool ends_with(std::string_view name, std::string_view end) {
-  return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
-}
-
-}  // namespace
-
-AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) {
+AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) : textures_(mesh) {
+  std::size_t texture = 0;
   for (const Attribute& attribute : mesh.attributes) {
     const std::string_view name = attribute.name;
     if (name == "NORMAL" && attribute.component_count == 3) add_channel(attribute, Kind::Direction, weights.normal);
-    if (name.starts_with("TEXCOORD_") && attribute.component_count == 2)
-      add_channel(attribute, Kind::Texture, weights.texcoord);
+    if (TextureAreas::is_texture(attribute)) add_texture(texture++, weights.texcoord);
     if (name.starts_with("COLOR_")) add_channel(attribute, Kind::Value, weights.color);
     if (name.starts_with("JOINTS_")) add_skin(mesh, attribute, weights.skin);
-    if (name.starts_with("TARGET_") && ends_with(name, ":POSITION"))
+    if (name.starts_with("TARGET_") && name.ends_with(":POSITION"))
       add_channel(attribute, Kind::Displacement, weights.target);
   }
 }
 
 void AttributeCost::add_channel(const Attribute& attribute, Kind kind, double weight) {
-  Channel channel{kind, weight, texture_.size(), attribute.component_count, finite_values(attribute)};
-  if (kind == Kind::Texture) texture_.push_back(channels_.size());
-  // Texture coordinates are needed even where they cost nothing: their faces must not turn over.
-  if (weight > 0 || kind == Kind::Texture) channels_.push_back(std::move(channel));
+  if (weight > 0) channels_.push_back({kind, weight, 0, attribute.component_count, finite_values(attribute)});
+}
+
+void AttributeCost::add_texture(std::size_t texture, double weight) {
+  if (weight > 0) channels_.push_back({Kind::Texture, weight, texture, 2, {}});
 }
 
 void AttributeCost::add_skin(const Mesh& mesh, const Attribute& joints, double weight) {
@@ -64,18 +59,20 @@ double AttributeCost::squared_difference(Index wedge, const Place& place, const 
 }
 
 double AttributeCost::difference(const Channel& channel, Index wedge, const Place& place) const {
+  const std::vector<float>& values =
+      channel.kind == Kind::Texture ? textures_.coordinates(channel.texture) : channel.values;
   std::array<double, 4> there{};
   const std::size_t width = std::min<std::size_t>(channel.width, there.size());
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < width; ++i)
-      there[i] += place.weights[k] * static_cast<double>(channel.values[place.wedges[k] * channel.width + i]);
+      there[i] += place.weights[k] * static_cast<double>(values[place.wedges[k] * channel.width + i]);
   if (channel.kind == Kind::Direction) {
     const double length = std::sqrt(there[0] * there[0] + there[1] * there[1] + there[2] * there[2]);
     for (std::size_t i = 0; i < 3 && length > 0; ++i) there[i] /= length;
   }
   double sum = 0;
   for (std::size_t i = 0; i < width; ++i) {
-    const double d = there[i] - static_cast<double>(channel.values[wedge * channel.width + i]);
+    const double d = there[i] - static_cast<double>(values[wedge * channel.width + i]);
     sum += d * d;
   }
   return std::sqrt(sum);
@@ -101,12 +98,6 @@ double AttributeCost::difference(const Skin& skin, Index wedge, const Place& pla
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) sum += std::abs(share[i].second);
   return 0.5 * sum;
-}
-
-double AttributeCost::texture_area(std::size_t texture, Index a, Index b, Index c) const {
-  const Channel& channel = channels_[texture_[texture]];
-  const auto at = [&](Index wedge, std::size_t i) { return static_cast<double>(channel.values[2 * std::size_t{wedge} + i]); };
-  return (at(b, 0) - at(a, 0)) * (at(c, 1) - at(a, 1)) - (at(b, 1) - at(a, 1)) * (at(c, 0) - at(a, 0));
 }
 
 }  // namespace lodestone::detail

@@ -2,19 +2,20 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/simplify.h>
 
+#include "texture_areas.h"
+
 namespace lodestone::detail {
 
 /// What turns differences of attributes into lengths, for one side of a star.
 struct AttributeScale {
-  double radius = 0;               ///< of the star, mesh units
-  std::vector<double> texture;     ///< by texture channel: mesh units per unit of texture
-  std::vector<int> orientation;    ///< by texture channel: sign of the faces' area there; 0 where they have none or disagree
+  double radius = 0;             ///< of the star, mesh units
+  std::vector<double> texture;   ///< by texture channel: mesh units per unit of texture
+  std::vector<int> orientation;  ///< by texture channel: sign of the faces' area; 0 where they have none or disagree
 };
 
 /// Prices what a removal does to attributes, as lengths in mesh units.
@@ -26,8 +27,9 @@ class AttributeCost {
  public:
   AttributeCost(const Mesh& mesh, const AttributeWeights& weights);
 
-  bool empty() const { return channels_.empty() && skin_.empty(); }
-  std::size_t texture_count() const { return texture_.size(); }
+  /// Whether there is nothing to price, nor a texture whose faces must not turn over.
+  bool empty() const { return channels_.empty() && skin_.empty() && textures_.count() == 0; }
+  std::size_t texture_count() const { return textures_.count(); }
 
   /// Where attributes stand on a face: the wedges of its corners, and the weight of each.
   struct Place {
@@ -38,7 +40,7 @@ class AttributeCost {
   double squared_difference(Index wedge, const Place& place, const AttributeScale& scale) const;
 
   /// Returns twice the signed area of three wedges in a texture channel.
-  double texture_area(std::size_t texture, Index a, Index b, Index c) const;
+  double texture_area(std::size_t texture, Index a, Index b, Index c) const { return textures_.area(texture, a, b, c); }
 
  private:
   enum class Kind : std::uint8_t { Direction, Texture, Value, Displacement };
@@ -48,7 +50,7 @@ class AttributeCost {
     double weight = 0;
     std::size_t texture = 0;  // its number, for Kind::Texture
     std::size_t width = 0;
-    std::vector<float> values;
+    std::vector<float> values;  // empty for Kind::Texture: see textures_
   };
   /// The joints that move each wedge, and their weights.
   struct Skin {
@@ -59,12 +61,13 @@ class AttributeCost {
   };
 
   void add_channel(const Attribute& attribute, Kind kind, double weight);
+  void add_texture(std::size_t texture, double weight);
   void add_skin(const Mesh& mesh, const Attribute& joints, double weight);
   double difference(const Channel& channel, Index wedge, const Place& place) const;
   static double difference(const Skin& skin, Index wedge, const Place& place);
 
+  TextureAreas textures_;
   std::vector<Channel> channels_;
-  std::vector<std::size_t> texture_;  // by texture channel: which of channels_
   std::vector<Skin> skin_;
 };
 

@@ -10,9 +10,10 @@
 #include <tuple>
 #include <vector>
 
-#include "attribute_cost.h"
-#include "finite_values.h"
 #include "constrained_edges.h"
+#include "finite_values.h"
+#include "grouping.h"
+#include "texture_areas.h"
 #include "triangle.h"
 
 namespace lodestone::detail {
@@ -32,12 +33,12 @@ struct SurfacePlace {
 /// The original surface, to walk on without crossing seams.
 class SeamedSurface {
  public:
-  explicit SeamedSurface(const Mesh& mesh) : mesh_(mesh), across_(mesh.corner_wedge.size(), kNoIndex) {
+  explicit SeamedSurface(const Mesh& mesh)
+      : mesh_(mesh),
+        across_(mesh.corner_wedge.size(), kNoIndex),
+        wedge_corners_(mesh.wedge_count(), mesh.corner_wedge.size(), [&](Index c) { return mesh.corner_wedge[c]; }) {
     for (const MeshEdge& edge : list_edges(mesh))
       if (!edge.constrained) across_[edge.corners[0]] = edge.corners[1], across_[edge.corners[1]] = edge.corners[0];
-    wedge_corners_.resize(mesh.corner_wedge.size());
-    for (Index c = 0; c < wedge_corners_.size(); ++c) wedge_corners_[c] = {mesh.corner_wedge[c], c};
-    std::sort(wedge_corners_.begin(), wedge_corners_.end());
   }
 
   /// Walks from the faces at a wedge towards `p`, nearest faces first, until it comes no nearer.
@@ -51,9 +52,7 @@ class SeamedSurface {
       entry->second = nearest_weights(p, triangle_of(mesh_, face));
       waiting.emplace(entry->second.squared_distance, face);
     };
-    for (auto it = std::lower_bound(wedge_corners_.begin(), wedge_corners_.end(), std::pair(wedge, Index{0}));
-         it != wedge_corners_.end() && it->first == wedge; ++it)
-      visit(face_of_corner(it->second));
+    for (const Index corner : wedge_corners_[wedge]) visit(face_of_corner(corner));
     SurfacePlace best;
     double least = std::numeric_limits<double>::infinity();
     for (int patience = kPatience; !waiting.empty() && patience > 0; --patience) {
@@ -73,7 +72,7 @@ class SeamedSurface {
  private:
   const Mesh& mesh_;
   std::vector<Index> across_;
-  std::vector<std::pair<Index, Index>> wedge_corners_;
+  Grouping wedge_corners_;
 };
 
 bool same_bytes(const Mesh& a, Index wedge_a, const Mesh& b, Index wedge_b) {
@@ -142,8 +141,7 @@ void blend(const Mesh& original, const std::vector<float>& values, const Surface
   std::array<double, 16> sum{};
   for (Index k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < width; ++i)
-      sum[i] += place.weights[k] *
-                static_cast<double>(values[original.corner_wedge[3 * place.face + k] * width + i]);
+      sum[i] += place.weights[k] * static_cast<double>(values[original.corner_wedge[3 * place.face + k] * width + i]);
   const bool is_direction = (attribute.name == "NORMAL" || attribute.name == "TANGENT") && width >= 3;
   if (is_direction) {
     const double norm = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
@@ -166,15 +164,14 @@ void copy_wedge(const Mesh& from, Mesh& to, Index wedge) {
 
 /// Puts vertices back at whose faces a texture has turned over; returns whether there were any.
 bool put_back_turned(const Mesh& before, const std::vector<std::vector<int>>& orientation, Mesh& level) {
-  const AttributeCost textures(level, {0, 0, 0, 0, 0});
+  const TextureAreas textures(level);
   std::vector<std::uint8_t> back(level.vertex_count(), 0);
   bool any = false;
-  for (std::size_t t = 0; t < textures.texture_count(); ++t)
+  for (std::size_t t = 0; t < textures.count(); ++t)
     for (Index f = 0; f < level.face_count(); ++f) {
-      const Index* wedge = &level.corner_wedge[3 * std::size_t{f}];
-      if (textures.texture_area(t, wedge[0], wedge[1], wedge[2]) * orientation[t][f] >= 0) continue;
+      if (textures.area(t, level, f) * orientation[t][f] >= 0) continue;
       for (Index k = 0; k < 3; ++k) {
-        const Index v = level.wedge_vertex[wedge[k]];
+        const Index v = level.corner_vertex(3 * f + k);
         if (level.positions[v] == before.positions[v]) continue;
         back[v] = 1;
         any = true;
@@ -189,12 +186,11 @@ bool put_back_turned(const Mesh& before, const std::vector<std::vector<int>>& or
 
 /// The sign of every face's area in every texture, with the attributes of `before` on the faces of `level`.
 std::vector<std::vector<int>> orientations(const Mesh& before, const Mesh& level) {
-  const AttributeCost textures(before, {0, 0, 0, 0, 0});
-  std::vector<std::vector<int>> signs(textures.texture_count());
+  const TextureAreas textures(before);
+  std::vector<std::vector<int>> signs(textures.count());
   for (std::size_t t = 0; t < signs.size(); ++t)
     for (Index f = 0; f < level.face_count(); ++f) {
-      const Index* wedge = &level.corner_wedge[3 * std::size_t{f}];
-      const double area = textures.texture_area(t, wedge[0], wedge[1], wedge[2]);
+      const double area = textures.area(t, level, f);
       signs[t].push_back(area > 0 ? 1 : area < 0 ? -1 : 0);
     }
   return signs;
@@ -207,7 +203,8 @@ void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
   const SeamedSurface surface(original);
   const WedgeFinder finder(original);
   std::vector<std::vector<float>> values;
-  for (const Attribute& a : original.attributes) values.push_back(is_skinning(a) ? std::vector<float>() : finite_values(a));
+  for (const Attribute& a : original.attributes)
+    values.push_back(is_skinning(a) ? std::vector<float>() : finite_values(a));
   for (Index w = 0; w < level.wedge_count(); ++w) {
     const Index v = level.wedge_vertex[w];
     if (level.positions[v] == before.positions[v]) continue;

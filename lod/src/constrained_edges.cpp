@@ -31,11 +31,10 @@ std::vector<MeshEdge> list_edges(const Mesh& mesh) {
   std::vector<MeshEdge> edges;
   for (std::size_t i = 0, j = 0; i < halves.size(); i = j) {
     while (j < halves.size() && halves[j].vertices == halves[i].vertices) ++j;
-    MeshEdge& edge = edges.emplace_back(MeshEdge{halves[i].vertices, {}, true});
-    edge.corners = {kNoIndex, kNoIndex};
-    if (j - i != 2 || !is_free(mesh, halves[i].corner, halves[i + 1].corner)) continue;
-    edge.corners = {halves[i].corner, halves[i + 1].corner};
-    edge.constrained = false;
+    MeshEdge& edge = edges.emplace_back();
+    edge.vertices = halves[i].vertices;
+    edge.constrained = j - i != 2 || !is_free(mesh, halves[i].corner, halves[i + 1].corner);
+    if (!edge.constrained) edge.corners = {halves[i].corner, halves[i + 1].corner};
   }
   return edges;
 }

@@ -4,8 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "attribute_cost.h"
 #include "face_guard.h"
+#include "grouping.h"
+#include "texture_areas.h"
 #include "triangle.h"
 
 namespace lodestone::detail {
@@ -13,31 +14,14 @@ namespace {
 
 constexpr double kGain = 0.98;  // turned where the squared distances fall below this share
 
-/// The samples of each face.
-class SamplesByFace {
- public:
-  SamplesByFace(std::size_t face_count, std::span<const SurfaceSample> samples)
-      : samples_(samples), begin_(face_count + 1, 0), number_(samples.size()) {
-    for (const SurfaceSample& sample : samples) ++begin_[sample.face + 1];
-    for (std::size_t f = 0; f < face_count; ++f) begin_[f + 1] += begin_[f];
-    std::vector<Index> next(begin_.begin(), begin_.end() - 1);
-    for (Index i = 0; i < samples.size(); ++i) number_[next[samples[i].face]++] = i;
-  }
-  template <class Visit>
-  void for_each(Index face, const Visit& visit) const {
-    for (Index i = begin_[face]; i < begin_[face + 1]; ++i) visit(samples_[number_[i]]);
-  }
-
- private:
-  std::span<const SurfaceSample> samples_;
-  std::vector<Index> begin_;
-  std::vector<Index> number_;
-};
-
 class EdgeTurner {
  public:
   EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<const SurfaceSample> samples)
-      : mesh_(mesh), edges_(edges), by_face_(mesh.face_count(), samples), attributes_(mesh, {0, 0, 0, 0, 0}) {}
+      : mesh_(mesh),
+        edges_(edges),
+        samples_(samples),
+        samples_of_face_(mesh.face_count(), samples.size(), [&](Index i) { return samples[i].face; }),
+        textures_(mesh) {}
 
   std::size_t run() {
     std::size_t count = 0;
@@ -79,14 +63,16 @@ class EdgeTurner {
     std::copy(wedges.begin(), wedges.end(), mesh_.corner_wedge.begin() + 3 * std::ptrdiff_t{face});
   }
 
-  /// Edges that were there at the start count even where they have been turned since: the next pass may use their place.
+  /// Edges that were there at the start count even where they have been turned since: the next pass may use their
+  /// place.
   bool has_edge(Index c, Index d) const {
     const std::pair<Index, Index> wanted = std::minmax(vertex(c), vertex(d));
     if (wanted.first == wanted.second) return true;
-    const auto found = std::lower_bound(edges_.begin(), edges_.end(), wanted, [](const MeshEdge& edge, const auto& key) {
-      return std::pair(edge.vertices[0], edge.vertices[1]) < key;
-    });
-    const bool there = found != edges_.end() && found->vertices[0] == wanted.first && found->vertices[1] == wanted.second;
+    const auto found = std::lower_bound(
+        edges_.begin(), edges_.end(), wanted,
+        [](const MeshEdge& edge, const auto& key) { return std::pair(edge.vertices[0], edge.vertices[1]) < key; });
+    const bool there =
+        found != edges_.end() && found->vertices[0] == wanted.first && found->vertices[1] == wanted.second;
     return there || std::find(added_.begin(), added_.end(), wanted) != added_.end();
   }
 
@@ -97,10 +83,9 @@ class EdgeTurner {
   }
 
   bool turns_texture(const Quad& q) const {
-    for (std::size_t t = 0; t < attributes_.texture_count(); ++t) {
-      const double before = attributes_.texture_area(t, q.a, q.b, q.c) + attributes_.texture_area(t, q.b, q.a, q.d);
-      if (before * attributes_.texture_area(t, q.a, q.d, q.c) < 0) return true;
-      if (before * attributes_.texture_area(t, q.d, q.b, q.c) < 0) return true;
+    for (std::size_t t = 0; t < textures_.count(); ++t) {
+      const double before = textures_.area(t, q.a, q.b, q.c) + textures_.area(t, q.b, q.a, q.d);
+      if (before * textures_.area(t, q.a, q.d, q.c) < 0 || before * textures_.area(t, q.d, q.b, q.c) < 0) return true;
     }
     return false;
   }
@@ -111,19 +96,21 @@ class EdgeTurner {
     const Triangle first = triangle(q.a, q.d, q.c);
     const Triangle second = triangle(q.d, q.b, q.c);
     for (const Index face : q.face)
-      by_face_.for_each(face, [&](const SurfaceSample& sample) {
+      for (const Index i : samples_of_face_[face]) {
+        const SurfaceSample& sample = samples_[i];
         before += sample.weight * sample.squared_distance;
         const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
         const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
         after += sample.weight * std::min(near_first, near_second);
-      });
+      }
     return after < kGain * before;
   }
 
   Mesh& mesh_;
   std::span<const MeshEdge> edges_;
-  SamplesByFace by_face_;
-  AttributeCost attributes_;
+  std::span<const SurfaceSample> samples_;
+  Grouping samples_of_face_;
+  TextureAreas textures_;
   std::vector<std::uint8_t> taken_;
   std::vector<std::pair<Index, Index>> added_;
 };

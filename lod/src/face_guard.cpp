@@ -13,11 +13,15 @@ double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
+bool keeps_direction(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before) {
+  const Vec3 normal = cross(b - a, c - a);
+  return dot(normal, before) > kMinCosine * length(normal) * length(before);
+}
+
 }  // namespace
 
 bool is_upright(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before) {
-  const Vec3 normal = cross(b - a, c - a);
-  return dot(normal, before) > kMinCosine * length(normal) * length(before) && shape(a, b, c) > kMinShape;
+  return keeps_direction(a, b, c, before) && shape(a, b, c) > kMinShape;
 }
 
 void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions) {
@@ -32,10 +36,9 @@ void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions) {
       const Vec3 c = mesh.corner_position(3 * f + 2);
       const Vec3 p(positions[v[0]]), q(positions[v[1]]), r(positions[v[2]]);
       // What was a sliver may stay one, as long as it gets no worse.
-      const Vec3 before = cross(b - a, c - a);
-      if (is_upright(p, q, r, before)) continue;
-      const bool upright = dot(cross(q - p, r - p), before) > kMinCosine * length(cross(q - p, r - p)) * length(before);
-      if (upright && shape(p, q, r) >= shape(a, b, c)) continue;
+      const double new_shape = shape(p, q, r);
+      if (keeps_direction(p, q, r, cross(b - a, c - a)) && (new_shape > kMinShape || new_shape >= shape(a, b, c)))
+        continue;
       for (const Index i : v) positions[i] = mesh.positions[i];
       changed = true;
     }

@@ -1,5 +1,6 @@
 #include "pieces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -34,15 +35,9 @@ Pieces::Pieces(const Mesh& mesh, const Connectivity& connectivity) : piece_(mesh
   for (Index v = 0; v < mesh.vertex_count(); ++v) joined.join(v, connectivity.site(v));
   Index count = 0;
   for (Index v = 0; v < mesh.vertex_count(); ++v) piece_[v] = joined.find(v) == v ? count++ : piece_[joined.find(v)];
-  begin_.assign(count + 1, 0);
-  for (const Index piece : piece_) ++begin_[piece + 1];
-  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  vertices_.resize(mesh.vertex_count());
-  std::vector<Index> next(begin_.begin(), begin_.end() - 1);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) vertices_[next[piece_[v]]++] = v;
+  vertices_ = Grouping(count, piece_.size(), [&](Index v) { return piece_[v]; });
   face_count_.assign(count, 0);
   for (Index f = 0; f < mesh.face_count(); ++f) ++face_count_[piece_[mesh.corner_vertex(3 * f)]];
-  full_face_count_ = face_count_;
   for (const std::size_t faces : face_count_) left_ += faces > 0 ? 1 : 0;
 }
 
@@ -54,7 +49,7 @@ double Pieces::loss(const Mesh& mesh, Index piece) const {
   double squares = 0;
   for (const Index v : members) squares += squared_length(Vec3(mesh.positions[v]) - center);
   const double width = 2 * std::sqrt(squares / static_cast<double>(members.size()));
-  return width * std::sqrt(static_cast<double>(members.size() + full_face_count_[piece]));
+  return width * std::sqrt(static_cast<double>(members.size() + face_count_[piece]));
 }
 
 }  // namespace lodestone::detail

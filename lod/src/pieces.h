@@ -1,11 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/mesh.h>
+
+#include "grouping.h"
 
 namespace lodestone::detail {
 
@@ -18,9 +19,7 @@ class Pieces {
   std::size_t count() const { return face_count_.size(); }
   Index piece_of(Index vertex) const { return piece_[vertex]; }
   /// The full mesh's vertices of a piece.
-  std::span<const Index> vertices(Index piece) const {
-    return {vertices_.data() + begin_[piece], vertices_.data() + begin_[piece + 1]};
-  }
+  std::span<const Index> vertices(Index piece) const { return vertices_[piece]; }
   /// The faces a piece has left.
   std::size_t face_count(Index piece) const { return face_count_[piece]; }
   void lose_faces(Index piece, std::size_t count) { face_count_[piece] -= count; }
@@ -32,14 +31,13 @@ class Pieces {
 
   /// What the loss of a piece is charged for, a length that compares with the distance sums of removals: all of the
   /// points it stands for are lost, each as far as the piece is wide.
+  /// Pre: it has lost no faces.
   double loss(const Mesh& mesh, Index piece) const;
 
  private:
   std::vector<Index> piece_;  // by vertex
-  std::vector<Index> begin_;
-  std::vector<Index> vertices_;
+  Grouping vertices_;
   std::vector<std::size_t> face_count_;
-  std::vector<std::size_t> full_face_count_;
   std::size_t left_ = 0;
 };
 

@@ -1,10 +1,9 @@
 #include "record_builder.h"
 
 #include <algorithm>
-#include <cstring>
-#include <numeric>
 
 #include "canonical_face.h"
+#include "grouping.h"
 
 namespace lodestone::detail {
 namespace {
@@ -19,8 +18,7 @@ struct RecordBuilder::Numbering {
   std::vector<Index> wedge;
   std::vector<Index> face;
   std::vector<Index> source_wedge;  // by new number
-  std::vector<Index> wedge_begin;   // by vertex of the full mesh, the first of its copies: all their wedges in vertex_wedges
-  std::vector<Index> vertex_wedges;
+  Grouping vertex_wedges;           // by vertex of the full mesh, the first of its copies: the wedges of all of them
   std::vector<Index> group_face_count;
 };
 
@@ -72,19 +70,10 @@ void RecordBuilder::end_round() {
   if (round_end_.empty() ? !vertex_.empty() : round_end_.back() < vertex_.size()) round_end_.push_back(vertex_.size());
 }
 
-/// Lists the wedges of every vertex, those of its copies included.
-void RecordBuilder::list_wedges(Numbering& numbers) const {
-  const auto site_of = [&](Index wedge) { return connectivity_->site(mesh_->wedge_vertex[wedge]); };
-  numbers.wedge_begin.assign(mesh_->vertex_count() + 1, 0);
-  for (Index w = 0; w < mesh_->wedge_count(); ++w) ++numbers.wedge_begin[site_of(w) + 1];
-  std::partial_sum(numbers.wedge_begin.begin(), numbers.wedge_begin.end(), numbers.wedge_begin.begin());
-  std::vector<Index> next(numbers.wedge_begin.begin(), numbers.wedge_begin.end() - 1);
-  numbers.vertex_wedges.resize(mesh_->wedge_count());
-  for (Index w = 0; w < mesh_->wedge_count(); ++w) numbers.vertex_wedges[next[site_of(w)]++] = w;
-}
-
 void RecordBuilder::number_base(ProgressiveMesh& result, Numbering& numbers) const {
   const Connectivity& base = *connectivity_;
+  numbers.vertex_wedges = Grouping(mesh_->vertex_count(), mesh_->wedge_count(),
+                                   [&](Index wedge) { return base.site(mesh_->wedge_vertex[wedge]); });
   numbers.vertex.assign(mesh_->vertex_count(), kNoIndex);
   numbers.wedge.assign(mesh_->wedge_count(), kNoIndex);
   numbers.face.assign(mesh_->face_count(), kNoIndex);
@@ -97,9 +86,9 @@ void RecordBuilder::number_base(ProgressiveMesh& result, Numbering& numbers) con
   result.base_vertex_count = static_cast<Index>(result.positions.size());
   for (Index v = 0; v < mesh_->vertex_count(); ++v) {
     if (numbers.vertex[v] == kNoIndex) continue;
-    for (Index i = numbers.wedge_begin[v]; i < numbers.wedge_begin[v + 1]; ++i) {
-      numbers.wedge[numbers.vertex_wedges[i]] = static_cast<Index>(result.wedge_vertex.size());
-      numbers.source_wedge.push_back(numbers.vertex_wedges[i]);
+    for (const Index wedge : numbers.vertex_wedges[v]) {
+      numbers.wedge[wedge] = static_cast<Index>(result.wedge_vertex.size());
+      numbers.source_wedge.push_back(wedge);
       result.wedge_vertex.push_back(numbers.vertex[v]);
     }
   }
@@ -134,8 +123,7 @@ void RecordBuilder::number_record(std::size_t removal, ProgressiveMesh& result, 
       numbers.face[faces_[i]] = numbers.group_face_count[group_of(faces_[i])]++;
   }
   // Wedges that only finer levels use (a strip between two seams may have gone before its end did) belong here, too.
-  for (Index i = numbers.wedge_begin[source]; i < numbers.wedge_begin[source + 1]; ++i)
-    number_wedge(numbers.vertex_wedges[i]);
+  for (const Index wedge : numbers.vertex_wedges[source]) number_wedge(wedge);
 }
 
 void RecordBuilder::write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const {
@@ -180,7 +168,6 @@ void RecordBuilder::write_errors(ProgressiveMesh& result, const std::vector<floa
 ProgressiveMesh RecordBuilder::finish(const std::vector<float>& deviation) {
   ProgressiveMesh result;
   Numbering numbers;
-  list_wedges(numbers);
   number_base(result, numbers);
   result.sector_begin.push_back(0);
   result.polygon_begin.push_back(0);

@@ -21,14 +21,14 @@ class RecordBuilder {
   void end_round();
   std::size_t size() const { return vertex_.size(); }
 
-  /// Builds the result, with what the removals left as its base; `deviation` holds one entry for each removal, in order.
+  /// Builds the result, with what the removals left as its base; `deviation` holds one entry for each removal, in
+  /// order.
   ProgressiveMesh finish(const std::vector<float>& deviation);
 
  private:
   struct Numbering;
   void reserve(std::size_t record_count);
   Index group_of(Index face) const;
-  void list_wedges(Numbering& numbers) const;
   void number_base(ProgressiveMesh& result, Numbering& numbers) const;
   void number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const;
   void write_record(std::size_t removal, ProgressiveMesh& result, const Numbering& numbers) const;

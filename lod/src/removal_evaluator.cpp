@@ -57,12 +57,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
   const Mesh& mesh = state.mesh;
   if (mesh.wedge_count() == mesh.vertex_count()) return;
-  wedge_begin_.assign(mesh.vertex_count() + 1, 0);
-  for (const Index vertex : mesh.wedge_vertex) ++wedge_begin_[vertex + 1];
-  std::partial_sum(wedge_begin_.begin(), wedge_begin_.end(), wedge_begin_.begin());
-  std::vector<Index> next(wedge_begin_.begin(), wedge_begin_.end() - 1);
-  vertex_wedges_.resize(mesh.wedge_count());
-  for (Index w = 0; w < mesh.wedge_count(); ++w) vertex_wedges_[next[mesh.wedge_vertex[w]]++] = w;
+  wedges_ = Grouping(mesh.vertex_count(), mesh.wedge_count(), [&](Index wedge) { return mesh.wedge_vertex[wedge]; });
 }
 
 Evaluation RemovalEvaluator::evaluate(Index vertex, Removal& removal, Choice& choice) {
@@ -291,12 +286,11 @@ double RemovalEvaluator::line_weight(std::size_t spoke) const {
 
 /// The wedge of `vertex` whose attributes are most like those of another.
 Index RemovalEvaluator::best_wedge(Index vertex, Index like) const {
-  if (wedge_begin_.empty()) return vertex;  // never: without seams there are no corners that move
+  if (wedges_.empty()) return vertex;  // never: without seams there are no corners that move
   AttributeScale scale{1, std::vector<double>(attributes_.texture_count(), 1), {}};
-  Index best = vertex_wedges_[wedge_begin_[vertex]];
+  Index best = wedges_[vertex].front();
   double least = std::numeric_limits<double>::infinity();
-  for (Index i = wedge_begin_[vertex]; i < wedge_begin_[vertex + 1]; ++i) {
-    const Index wedge = vertex_wedges_[i];
+  for (const Index wedge : wedges_[vertex]) {
     const double difference = attributes_.squared_difference(like, {{wedge, wedge, wedge}, {1, 0, 0}}, scale);
     if (difference < least) least = difference, best = wedge;
   }

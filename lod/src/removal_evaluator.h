@@ -13,6 +13,7 @@
 #include <lodestone/lod/simplify.h>
 
 #include "attribute_cost.h"
+#include "grouping.h"
 #include "point_triangle.h"
 #include "simplify_state.h"
 
@@ -177,8 +178,7 @@ class RemovalEvaluator {
   const SimplifyState* state_;
   const SimplifyOptions* options_;
   AttributeCost attributes_;
-  std::vector<Index> wedge_begin_;  // by vertex: its wedges in vertex_wedges_; empty without seams
-  std::vector<Index> vertex_wedges_;
+  Grouping wedges_;  // by vertex; empty without seams
   double min_cosine_;
   bool keeps_upright_ = true;  // whether new faces turn no further than that from the old ones at their rim
   bool needs_angles_ = false;
