@@ -289,29 +289,17 @@ void restore_vertex(Connectivity& mesh, const RemovalRecord& record) {
 
 namespace {
 
-/// The faces that hang together with a vertex, over edges and copies.
-std::vector<Index> component_faces(const Connectivity& mesh, Index vertex) {
+/// The faces at some vertices, ascending.
+std::vector<Index> faces_of(const Connectivity& mesh, std::span<const Index> vertices) {
   std::vector<Index> faces;
-  std::vector<Index> waiting{vertex};
-  std::unordered_set<Index> seen_vertices{vertex};
-  std::unordered_set<Index> seen_faces;
-  const auto visit = [&](Index v) {
-    if (seen_vertices.insert(v).second) waiting.push_back(v);
-  };
   Star star;
-  while (!waiting.empty()) {
-    const Index v = waiting.back();
-    waiting.pop_back();
-    for (Index copy = mesh.next_copy(v); copy != v; copy = mesh.next_copy(copy)) visit(copy);
+  for (const Index v : vertices) {
     if (!mesh.has_vertex(v)) continue;
     mesh.gather_star(v, star);
-    for (const Index corner : star.corners) {
-      if (seen_faces.insert(face_of_corner(corner)).second) faces.push_back(face_of_corner(corner));
-      visit(mesh.vertex(next_corner(corner)));
-      visit(mesh.vertex(previous_corner(corner)));
-    }
+    for (const Index corner : star.corners) faces.push_back(face_of_corner(corner));
   }
   std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;
 }
 
@@ -327,8 +315,8 @@ SectorPatch lone_face(const Connectivity& mesh, Index corner) {
 
 }  // namespace
 
-std::vector<RemovalRecord> remove_component(Connectivity& mesh, Index vertex) {
-  const std::vector<Index> faces = component_faces(mesh, vertex);
+std::vector<RemovalRecord> remove_component(Connectivity& mesh, std::span<const Index> vertices) {
+  const std::vector<Index> faces = faces_of(mesh, vertices);
   std::vector<std::array<Index, 3>> corners;  // (site, vertex, corner): in this order copies stand together
   for (const Index face : faces)
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner)

@@ -31,9 +31,14 @@ constexpr double kStay = 0.02;                // how much a vertex wants to stay
 constexpr double kCornerStay = 1e6;           // the same where lines end or meet
 constexpr double kAlong = 0.05;               // what distance along the surface or line counts, of distance from it
 constexpr double kLineWeight = 2;             // of lines against surfaces, at equal length
-constexpr std::size_t kFewSamples = 150'000;  // small levels take a few more iterations in no time
+constexpr std::size_t kFewSamples = 100'000;  // small levels take a few more iterations in no time
 
-// Less gain than this, of the sum of squares before, is not worth another iteration; edges are turned in the first
+// Many faces of a level that keeps so large a share of them are the original's own. Sums of distances leave them where
+// they are, sums of squares do not; what is nearer than a share of the rms distance counts by its square there, too.
+constexpr double kFineShare = 0.3;
+constexpr double kSoftening = 0.1;
+
+// Less gain than this, of the sum before, is not worth another iteration; edges are turned in the first
 // ones, and the vertices follow.
 struct Effort {
   int times;  // as many iterations as asked for
@@ -41,7 +46,7 @@ struct Effort {
   double settled;
 };
 constexpr Effort kEffort = {1, 3, 0.985};
-constexpr Effort kEffortForFew = {3, 6, 0.998};
+constexpr Effort kEffortForFew = {6, 12, 0.999};
 
 constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
 
@@ -68,7 +73,11 @@ class Fitting {
 
  private:
   void classify();
-  double assign();
+  void assign();
+  void choose_norm();
+  double error() const;
+  double softened(double squared_distance) const;
+  double square_weight(double squared_distance) const;
   void turn_edges();
   void assemble(SparseSystem& system) const;
   void add_lines(SparseSystem& system) const;
@@ -81,7 +90,8 @@ class Fitting {
   const PlacementOptions& options_;
   const Mesh& original_;
   SurfaceIndex original_index_;
-  double reach_ = 0;  // how far a face may be from the original
+  double reach_ = 0;      // how far a face may be from the original
+  double softening_ = 0;  // distance; where it is not 0 sums of distances are minimised, not of squares
   std::vector<MeshEdge> edges_;
   SurfaceSamples samples_;
   LineSamples lines_;
@@ -96,10 +106,9 @@ void Fitting::classify() {
       if (edge.constrained && line_ends_[v] < 255) ++line_ends_[v];
 }
 
-/// Finds the face nearest to each sample; returns the weighted sum of squared distances.
-double Fitting::assign() {
+/// Finds the face nearest to each sample.
+void Fitting::assign() {
   const SurfaceIndex surface(level_);
-  double sum = 0;
   for (SurfaceSample& sample : samples_.all()) {
     const SurfaceIndex::Hit hit =
         surface.nearest(sample.position, std::numeric_limits<double>::infinity(), sample.face);
@@ -107,9 +116,32 @@ double Fitting::assign() {
     const Barycentric at = nearest_weights(sample.position, triangle_of(level_, hit.face));
     sample.weights = at.weights;
     sample.squared_distance = at.squared_distance;
-    sum += sample.weight * at.squared_distance;
   }
+}
+
+/// Chooses sums of distances for fine levels.
+void Fitting::choose_norm() {
+  if (static_cast<double>(level_.face_count()) < kFineShare * static_cast<double>(original_.face_count())) return;
+  double area = 0;
+  for (const SurfaceSample& sample : samples_.all()) area += sample.weight;
+  if (area > 0) softening_ = kSoftening * std::sqrt(error() / area);
+}
+
+/// The sum that is minimised, over the samples as last assigned.
+double Fitting::error() const {
+  double sum = 0;
+  for (const SurfaceSample& sample : samples_.all())
+    sum += sample.weight * (softening_ > 0 ? softened(sample.squared_distance) : sample.squared_distance);
   return sum;
+}
+
+double Fitting::softened(double squared_distance) const {
+  return std::sqrt(squared_distance + softening_ * softening_);
+}
+
+/// What a square counts for in that sum: iteratively reweighted least squares.
+double Fitting::square_weight(double squared_distance) const {
+  return softening_ > 0 ? softening_ / softened(squared_distance) : 1;
 }
 
 void Fitting::turn_edges() {
@@ -122,8 +154,8 @@ void Fitting::assemble(SparseSystem& system) const {
   system.clear();
   for (const SurfaceSample& sample : samples_.all()) {
     const Vec3 normal = normalized(area_vector(level_, sample.face));
-    const Symmetric3 metric =
-        Symmetric3::identity(kAlong * sample.weight) + Symmetric3::outer(normal, (1 - kAlong) * sample.weight);
+    const double weight = sample.weight * square_weight(sample.squared_distance);
+    const Symmetric3 metric = Symmetric3::identity(kAlong * weight) + Symmetric3::outer(normal, (1 - kAlong) * weight);
     system.add(&corner_vertex_[3 * std::size_t{sample.face}], sample.weights.data(), 3, sample.position, metric);
   }
   add_lines(system);
@@ -158,7 +190,7 @@ void Fitting::add_lines(SparseSystem& system) const {
     if (!(length_of_edge > 0)) continue;
     const double t = std::clamp(dot(hit.point - a, b - a) / (length_of_edge * length_of_edge), 0.0, 1.0);
     const double weights[2] = {1 - t, t};
-    const double weight = kLineWeight * sample.length * length_of_edge;
+    const double weight = kLineWeight * sample.length * length_of_edge * square_weight(hit.distance * hit.distance);
     const Symmetric3 metric =
         Symmetric3::identity(weight) + Symmetric3::outer((b - a) * (1 / length_of_edge), -(1 - kAlong) * weight);
     system.add(edge.vertices.data(), weights, 2, sample.position, metric);
@@ -233,17 +265,20 @@ bool Fitting::keep_faces_near(std::vector<Vec3f>& positions) const {
 }
 
 void Fitting::run() {
-  double best = assign();
+  assign();
+  choose_norm();
   reach_ = reach();
+  double best = error();
   Mesh best_level = level_;
   const Effort effort = samples_.all().size() <= kFewSamples ? kEffortForFew : kEffort;
   for (int i = 0; i < effort.times * options_.iterations; ++i) {
     if (i < effort.turning) turn_edges();
     move();
-    const double error = assign();
-    if (!(error < best)) break;
-    const bool settled = error > effort.settled * best;
-    best = error;
+    assign();
+    const double now = error();
+    if (!(now < best)) break;
+    const bool settled = now > effort.settled * best;
+    best = now;
     best_level = level_;
     if (settled && i + 1 >= effort.turning) break;
   }

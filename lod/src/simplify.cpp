@@ -342,7 +342,7 @@ void Simplifier::remove_piece(Index piece) {
     cost_[v] = kIllegal;
     if (seed == kNoIndex && state_.connectivity.has_vertex(v)) seed = v;
   }
-  const std::vector<RemovalRecord> records = remove_component(state_.connectivity, seed);
+  const std::vector<RemovalRecord> records = remove_component(state_.connectivity, pieces_.vertices(piece));
   pieces_.vanish(piece);
   const Index near = vertex_left_near(seed, piece);
   if (near == kNoIndex) {

@@ -62,11 +62,12 @@ void remove_vertex(Connectivity& mesh, RemovalRecord& record);
 /// Undoes the last removal: the mesh is again as it was before it, byte for byte.
 void restore_vertex(Connectivity& mesh, const RemovalRecord& record);
 
-/// Removes everything that hangs together with a vertex, over edges and over copies of vertices.
+/// Removes a whole component: everything that hangs together over edges and over copies of vertices.
 ///
+/// Pre: `vertices` are all of its vertices; there may be removed ones among them.
 /// Returns one record for each vertex and copy, copies of one vertex next to each other. A record's sectors are its
 /// faces that no earlier record has, each a lone one; vertices without any come last. Only whole components can go this
 /// way, so there is no function that undoes it; a `Cursor` over the records goes both ways.
-std::vector<RemovalRecord> remove_component(Connectivity& mesh, Index vertex);
+std::vector<RemovalRecord> remove_component(Connectivity& mesh, std::span<const Index> vertices);
 
 }  // namespace lodestone
