@@ -37,6 +37,17 @@ double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const 
 
 bool rejects(Verdict verdict) { return verdict != Verdict::Legal; }
 
+/// Takes over a trial that is better than the best so far; where none is legal yet, why this one is not.
+bool take_better(Evaluation& best, const Evaluation& found) {
+  if (rejects(found.verdict)) {
+    if (rejects(best.verdict)) best.verdict = found.verdict;
+    return false;
+  }
+  if (!rejects(best.verdict) && best.cost <= found.cost) return false;
+  best = found;
+  return true;
+}
+
 }  // namespace
 
 double hybrid_cost(double moved, double turned) {
@@ -47,7 +58,6 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
     : state_(&state),
       options_(&options),
       attributes_(state.mesh, options.weights),
-      min_cosine_(kMinCosine),
       ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
@@ -58,6 +68,12 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   const Mesh& mesh = state.mesh;
   if (mesh.wedge_count() == mesh.vertex_count()) return;
   wedges_ = Grouping(mesh.vertex_count(), mesh.wedge_count(), [&](Index wedge) { return mesh.wedge_vertex[wedge]; });
+}
+
+bool RemovalEvaluator::relax_angles(bool beyond) {
+  if (turn_limit_ == TurnLimit::None || (turn_limit_ == TurnLimit::Right && !beyond)) return false;
+  turn_limit_ = turn_limit_ == TurnLimit::Acute ? TurnLimit::Right : TurnLimit::None;
+  return true;
 }
 
 Evaluation RemovalEvaluator::evaluate(Index vertex, Removal& removal, Choice& choice) {
@@ -88,13 +104,7 @@ Evaluation RemovalEvaluator::evaluate_corner(RemovalRecord& record, Choice& choi
   for (const bool constrained : {true, false}) {
     for (std::size_t spoke = 0; spoke < ring_size(); ++spoke) {
       if (!is_target(spoke) || is_constrained_spoke(spoke) != constrained) continue;
-      const Evaluation found = evaluate_collapse(spoke, trial_);
-      if (rejects(found.verdict)) {
-        if (rejects(best.verdict)) best.verdict = found.verdict;
-        continue;
-      }
-      if (!rejects(best.verdict) && best.cost <= found.cost) continue;
-      best = found;
+      if (!take_better(best, evaluate_collapse(spoke, trial_))) continue;
       choice[0] = static_cast<std::uint8_t>(spoke);
       std::swap(record, trial_);
     }
@@ -112,13 +122,7 @@ Evaluation RemovalEvaluator::evaluate_copies(Index vertex, Removal& removal, Cho
   Evaluation best{Verdict::Flip};
   for (const auto& [spoke, site] : targets) {
     if (choice[0] != kNoChoice && choice[0] != spoke) continue;
-    const Evaluation found = evaluate_copies_at(vertex, site, trial_copies_);
-    if (rejects(found.verdict)) {
-      if (rejects(best.verdict)) best.verdict = found.verdict;
-      continue;
-    }
-    if (!rejects(best.verdict) && best.cost <= found.cost) continue;
-    best = found;
+    if (!take_better(best, evaluate_copies_at(vertex, site, trial_copies_))) continue;
     choice[0] = static_cast<std::uint8_t>(spoke);
     std::swap(removal, trial_copies_);
   }
@@ -444,16 +448,17 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
       continue;
     }
     at_rim = true;
-    if (keeps_upright_ && turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
+    if (turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
   }
-  if (keeps_upright_ && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
+  if (turn_limit_ != TurnLimit::None && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
   return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Flip : Verdict::Legal;
 }
 
 /// Whether a face turns by more than the angle allowed, from one normal to another, both of any length.
 bool RemovalEvaluator::turns_too_far(const Vec3& to, const Vec3& from) const {
+  if (turn_limit_ == TurnLimit::None) return false;
   const double cosine = dot(to, from);
-  return cosine < 0 || (min_cosine_ > 0 && cosine < min_cosine_ * length(to) * length(from));
+  return cosine < 0 || (turn_limit_ == TurnLimit::Acute && cosine < kMinCosine * length(to) * length(from));
 }
 
 /// Whether a texture would be turned over or lose its area on a new face, where it did neither on the old ones.

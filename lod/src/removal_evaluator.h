@@ -66,10 +66,7 @@ class RemovalEvaluator {
   /// From now on lets new faces turn further: at first up to a right angle; then, if `beyond`, by any angle, where a
   /// worse shape is better than too many faces. Textures still must not turn over. Returns whether there was further to
   /// go.
-  bool relax_angles(bool beyond) {
-    if (std::exchange(min_cosine_, 0) > 0) return true;
-    return beyond && std::exchange(keeps_upright_, false);
-  }
+  bool relax_angles(bool beyond);
 
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
@@ -103,6 +100,8 @@ class RemovalEvaluator {
     bool carries_from = true;  // whether it takes over what the line to `from` stood for
   };
   using Triangles = std::span<const PolygonTriangle>;
+  /// How far new faces may turn from the old ones at their rim.
+  enum class TurnLimit : std::uint8_t { Acute, Right, None };
 
   Evaluation evaluate_hole(RemovalRecord& record, Choice& choice);
   Evaluation evaluate_corner(RemovalRecord& record, Choice& choice);
@@ -179,8 +178,7 @@ class RemovalEvaluator {
   const SimplifyOptions* options_;
   AttributeCost attributes_;
   Grouping wedges_;  // by vertex; empty without seams
-  double min_cosine_;
-  bool keeps_upright_ = true;  // whether new faces turn no further than that from the old ones at their rim
+  TurnLimit turn_limit_ = TurnLimit::Acute;
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;

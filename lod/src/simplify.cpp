@@ -66,6 +66,7 @@ class Simplifier {
   bool ring_is_free(Index vertex);
   void claim_ring(const RemovalRecord& record);
   void update_dirty();
+  bool is_kept_by_turning(Index vertex) const;
   bool relax_angles(bool beyond_right_angles);
   bool target_met();
   void note_charge(double cost);
@@ -145,7 +146,7 @@ bool Simplifier::choose_candidates() {
   std::fill(piece_moves_.begin(), piece_moves_.end(), std::uint8_t{0});
   std::size_t turning = 0;
   for (Index v = 0; v < cost_.size(); ++v) {
-    if (verdict_[v] == Verdict::Turn && state_.connectivity.has_vertex(v)) ++turning;
+    if (is_kept_by_turning(v)) ++turning;
     if (cost_[v] == kIllegal) continue;
     candidates_.push_back(v);
     piece_moves_[pieces_.piece_of(v)] = 1;
@@ -277,12 +278,17 @@ bool Simplifier::run_round() {
   return remove_pieces(!any_left) || any_left;
 }
 
+/// Whether only the limit on angles keeps a vertex; of several copies the first stands for all.
+bool Simplifier::is_kept_by_turning(Index vertex) const {
+  const Connectivity& mesh = state_.connectivity;
+  return verdict_[vertex] == Verdict::Turn && mesh.has_vertex(vertex) && mesh.site(vertex) == vertex;
+}
+
 /// Lets faces turn further, and looks anew at the vertices that this kept. Returns whether there was further to go.
 bool Simplifier::relax_angles(bool beyond_right_angles) {
   if (!evaluator_.relax_angles(beyond_right_angles)) return false;
   for (Index v = 0; v < cost_.size(); ++v)
-    if (verdict_[v] == Verdict::Turn && state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v)
-      evaluate(v);
+    if (is_kept_by_turning(v)) evaluate(v);
   return true;
 }
 
