@@ -409,7 +409,7 @@ Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std:
     apex = 0;
     while (ring_number(sector, apex) != target) ++apex;
   }
-  const Triangles triangles = fan(size, apex);
+  const Triangles triangles = fills_.fan(size, apex);
   patch.triangles.assign(triangles.begin(), triangles.end());
   if (options_->metric == Metric::Hybrid) gather_points(sector);
   return judge(sector, patch.triangles);
@@ -485,57 +485,16 @@ Verdict RemovalEvaluator::judge(const Sector& sector, Triangles triangles) {
 RemovalEvaluator::Triangles RemovalEvaluator::candidate(const Sector& sector, int which) {
   const auto size = static_cast<int>(sector.size());
   if (size <= kMaxTabulatedPolygon) return triangulation(size, which);
-  return which < size ? fan(sector.size(), static_cast<std::size_t>(which)) : least_volume(sector);
+  return which < size ? fills_.fan(sector.size(), static_cast<std::size_t>(which)) : least_volume(sector);
 }
 
-RemovalEvaluator::Triangles RemovalEvaluator::fan(std::size_t size, std::size_t apex) {
-  fan_.clear();
-  for (std::size_t i = 1; i + 1 < size; ++i) {
-    std::array<std::size_t, 3> corner{apex, (apex + i) % size, (apex + i + 1) % size};
-    std::sort(corner.begin(), corner.end());
-    fan_.push_back({static_cast<std::uint8_t>(corner[0]), static_cast<std::uint8_t>(corner[1]),
-                    static_cast<std::uint8_t>(corner[2])});
-  }
-  return fan_;
-}
-
-/// The admissible triangulation with the least sum of squared volumes, by dynamic programming over the polygon's parts,
-/// after Klincsek: Minimal triangulations of polygonal domains (1980).
+/// The admissible triangulation with the least sum of squared volumes.
 RemovalEvaluator::Triangles RemovalEvaluator::least_volume(const Sector& sector) {
-  const std::size_t size = sector.size();
-  least_volume_.clear();
-  if (size > kMaxSearchedPolygon) return least_volume_;
-  least_sum_.assign(size * size, 0);
-  least_apex_.assign(size * size, 0);
-  for (std::size_t span = 2; span < size; ++span) {
-    for (std::size_t from = 0, to = span; to < size; ++from, ++to) {
-      double least = std::numeric_limits<double>::infinity();
-      for (std::size_t apex = from + 1; apex < to; ++apex) {
-        const double rest = least_sum_[from * size + apex] + least_sum_[apex * size + to];
-        if (!(rest < least)) continue;
-        const Triangle& entry = triangle(
-            sector, {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex), static_cast<std::uint8_t>(to)});
-        const double sum = rest + entry.volume * entry.volume;
-        if (rejects(entry.verdict) || !(sum < least)) continue;
-        least = sum;
-        least_apex_[from * size + to] = static_cast<std::uint8_t>(apex);
-      }
-      least_sum_[from * size + to] = least;
-    }
-  }
-  if (std::isinf(least_sum_[size - 1])) return least_volume_;
-  std::vector<std::pair<std::size_t, std::size_t>> parts{{0, size - 1}};
-  while (!parts.empty()) {
-    const auto [from, to] = parts.back();
-    parts.pop_back();
-    if (to - from < 2) continue;
-    const std::size_t apex = least_apex_[from * size + to];
-    least_volume_.push_back(
-        {static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(apex), static_cast<std::uint8_t>(to)});
-    parts.emplace_back(from, apex);
-    parts.emplace_back(apex, to);
-  }
-  return least_volume_;
+  if (sector.size() > kMaxSearchedPolygon) return {};
+  return fills_.cheapest(sector.size(), [&](PolygonTriangle t) {
+    const Triangle& entry = triangle(sector, t);
+    return rejects(entry.verdict) ? std::numeric_limits<double>::infinity() : entry.volume * entry.volume;
+  });
 }
 
 double RemovalEvaluator::squared_volume_sum(const Sector& sector, Triangles triangles) {

@@ -15,6 +15,7 @@
 #include "attribute_cost.h"
 #include "grouping.h"
 #include "point_triangle.h"
+#include "polygon_fills.h"
 #include "simplify_state.h"
 
 namespace lodestone::detail {
@@ -129,7 +130,6 @@ class RemovalEvaluator {
   Verdict fill_with_fan(Sector& sector, SectorPatch& patch, std::size_t target);
   Verdict choose(Sector& sector, SectorPatch& patch, std::uint8_t& choice);
   Triangles candidate(const Sector& sector, int which);
-  Triangles fan(std::size_t size, std::size_t apex);
   Triangles least_volume(const Sector& sector);
   Verdict list_admissible(const Sector& sector);
   int best_by_distance(const Sector& sector);
@@ -206,10 +206,7 @@ class RemovalEvaluator {
   std::vector<Triangle> table_;
   Triangle untabulated_;
   std::vector<std::pair<double, int>> ranked_;
-  std::vector<PolygonTriangle> fan_;
-  std::vector<PolygonTriangle> least_volume_;
-  std::vector<double> least_sum_;         // by first and last corner of a part of the polygon: of squared volumes
-  std::vector<std::uint8_t> least_apex_;  // and the corner of the triangle on that edge
+  PolygonFills fills_;
   RemovalRecord trial_;
   Removal trial_copies_;
   std::vector<Vec3> edge_normal_;  // of coarse faces, by directed polygon edge

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <lodestone/core/triangulation.h>
+
+namespace lodestone::detail {
+
+/// Triangulations of polygons too large for a table. What a function returns stands until it is called again.
+class PolygonFills {
+ public:
+  using Triangles = std::span<const PolygonTriangle>;
+
+  /// The one whose triangles all meet at corner `apex`.
+  Triangles fan(std::size_t size, std::size_t apex);
+
+  /// The one with the least sum of `price(triangle)`, which is infinite for a triangle that must not be in it; empty
+  /// where there is none. Dynamic programming over the polygon's parts, after G. T. Klincsek: Minimal triangulations of
+  /// polygonal domains (1980).
+  template <class Price>
+  Triangles cheapest(std::size_t size, const Price& price) {
+    least_.assign(size * size, 0);
+    apex_.assign(size * size, 0);
+    for (std::size_t span = 2; span < size; ++span)
+      for (std::size_t from = 0; from + span < size; ++from) price_part(size, from, from + span, price);
+    return collect(size);
+  }
+
+ private:
+  static PolygonTriangle triangle(std::size_t a, std::size_t b, std::size_t c) {
+    return {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), static_cast<std::uint8_t>(c)};
+  }
+
+  /// Finds the cheapest triangle on the edge that cuts off corners `from` to `to`; their parts are priced already.
+  template <class Price>
+  void price_part(std::size_t size, std::size_t from, std::size_t to, const Price& price) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t apex = from + 1; apex < to; ++apex) {
+      const double rest = least_[from * size + apex] + least_[apex * size + to];
+      if (!(rest < least)) continue;
+      const double sum = rest + price(triangle(from, apex, to));
+      if (!(sum < least)) continue;
+      least = sum;
+      apex_[from * size + to] = static_cast<std::uint8_t>(apex);
+    }
+    least_[from * size + to] = least;
+  }
+
+  Triangles collect(std::size_t size);
+
+  std::vector<PolygonTriangle> fan_;
+  std::vector<PolygonTriangle> cheapest_;
+  std::vector<double> least_;       // by first and last corner of a part of the polygon: the sum of its prices
+  std::vector<std::uint8_t> apex_;  // and the corner of the triangle on its edge
+};
+
+}  // namespace lodestone::detail
