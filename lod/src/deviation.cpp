@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "supremum.h"
+#include "triangle.h"
 
 namespace lodestone {
 namespace {
@@ -28,7 +29,8 @@ constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's def
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
 constexpr double kLeastFaceShare = 0.125;
 
-/// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be 0.
+/// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be
+/// 0.
 double add_up(std::vector<double>& sizes) {
   double whole = 0;
   for (double& size : sizes) size = whole += size;
@@ -37,8 +39,8 @@ double add_up(std::vector<double>& sizes) {
   return whole;
 }
 
-/// Calls `visit(element, share, k)` for k = 0 … count − 1: the places at equal steps of the elements' sizes, whose running
-/// sums are `until`. `share` is how much of the element lies before the place.
+/// Calls `visit(element, share, k)` for k = 0 … count − 1: the places at equal steps of the elements' sizes, whose
+/// running sums are `until`. `share` is how much of the element lies before the place.
 template <class Visit>
 void step_through(const std::vector<double>& until, std::size_t count, const Visit& visit) {
   std::size_t element = 0;
@@ -228,12 +230,8 @@ Deviation deviation_of_empty(const Mesh& a, const Mesh& b) {
 }  // namespace
 
 Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k) {
-  const double n = static_cast<double>(k);
-  double u = std::fmod(0.5 + n * 0.7548776662466927, 1.0);
-  double v = std::fmod(0.5 + n * 0.5698402909980532, 1.0);
-  if (u + v > 1) u = 1 - u, v = 1 - v;
-  return mesh.corner_position(3 * face) * (1 - u - v) + mesh.corner_position(3 * face + 1) * u +
-         mesh.corner_position(3 * face + 2) * v;
+  return detail::point_on_triangle(mesh.corner_position(3 * face), mesh.corner_position(3 * face + 1),
+                                   mesh.corner_position(3 * face + 2), k);
 }
 
 Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options) {
@@ -257,7 +255,8 @@ Deviation measure_maximum(const Mesh& a, const SurfaceIndex& a_index, const Mesh
   PatchBound a_patch(a), b_patch(b);
   SupremumSearch forward(a, b_index, b_patch, a_bounds);
   SupremumSearch backward(b, a_index, a_patch, b_bounds);
-  return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a, b), enough), options.budget);
+  return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a, b), enough),
+                             options.budget);
 }
 
 }  // namespace lodestone

@@ -1,12 +1,19 @@
 #include "face_guard.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "triangle.h"
 
 namespace lodestone::detail {
 namespace {
 
 constexpr double kMinCosine = 0.5;  // of the angle a face may turn by in one go
 constexpr double kMinShape = 0.02;  // a face's height over its longest edge
+
+constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
+constexpr double kFacesWell = 0.5;        // a face that looked within 60° of the original's way …
+constexpr double kTurnsLittle = 0.87;     // … and has turned by less than 30° since does not look away
 
 double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
@@ -43,6 +50,67 @@ void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions) {
       changed = true;
     }
   }
+}
+
+double OriginalGuard::farthest(const Mesh& level) {
+  standing_.resize(level.face_count());
+  double distance = 0;
+  for (Index f = 0; f < level.face_count(); ++f) {
+    standing_[f] = look_at(corners_of(level, f, level.positions), kNoIndex);
+    distance = std::max(distance, standing_[f].distance);
+  }
+  return distance;
+}
+
+bool OriginalGuard::keep_faces_near(const Mesh& level, double reach, std::vector<Vec3f>& positions) {
+  bool all_near = true;
+  for (Index f = 0; f < level.face_count(); ++f) {
+    const Corners before = corners_of(level, f, level.positions);
+    const Corners now = corners_of(level, f, positions);
+    Standing& standing = standing_[f];
+    if (now == before || is_surely_fine(standing, now, reach)) continue;
+    standing = look_at(now, standing.near);
+    const bool looks_away = standing.facing < 0 && look_at(before, standing.near).facing >= 0;
+    if (standing.distance <= reach && !looks_away) continue;
+    all_near = false;
+    for (Index k = 0; k < 3; ++k) {
+      const Index v = level.corner_vertex(3 * f + k);
+      positions[v] = level.positions[v];
+    }
+  }
+  return all_near;
+}
+
+OriginalGuard::Corners OriginalGuard::corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions) {
+  return {Vec3(positions[level.corner_vertex(3 * face)]), Vec3(positions[level.corner_vertex(3 * face + 1)]),
+          Vec3(positions[level.corner_vertex(3 * face + 2)])};
+}
+
+/// `near` is a face of the original near there, if known.
+OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near) const {
+  const auto& [a, b, c] = corners;
+  Standing result{corners, 0, -1, near};
+  const auto visit = [&](const Vec3& point) {
+    const SurfaceIndex::Hit hit = index_.nearest(point, std::numeric_limits<double>::infinity(), result.near);
+    result.distance = std::max(result.distance, hit.distance);
+    result.near = hit.face;
+  };
+  for (const Vec3& corner : corners) visit(corner);
+  const Vec3 normal = normalized(cross(b - a, c - a));
+  for (std::size_t k = 0; k < kPointsOfFace; ++k) {
+    visit(point_on_triangle(a, b, c, k));
+    result.facing = std::max(result.facing, dot(normal, normalized(area_vector(original_, result.near))));
+  }
+  return result;
+}
+
+/// Whether a face that is now at `corners` need not be looked at: no point of it has moved farther than a corner has.
+bool OriginalGuard::is_surely_fine(const Standing& last, const Corners& corners, double reach) {
+  double way = 0;
+  for (std::size_t k = 0; k < 3; ++k) way = std::max(way, length(corners[k] - last.corners[k]));
+  if (last.distance + way > reach || last.facing < kFacesWell) return false;
+  const auto normal = [](const Corners& c) { return normalized(cross(c[1] - c[0], c[2] - c[0])); };
+  return dot(normal(corners), normal(last.corners)) > kTurnsLittle;
 }
 
 }  // namespace lodestone::detail

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
+#include <limits>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/lod/deviation.h>
 
 namespace lodestone::detail {
 
@@ -11,5 +14,38 @@ bool is_upright(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before)
 
 /// Puts back vertices whose new positions would turn faces over or make them slivers, until none does.
 void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions);
+
+/// Keeps the faces of a level that is being fitted near the original, and facing as it does. Looks at some points of a
+/// face, and again only once it has moved so far that the answer may have changed.
+class OriginalGuard {
+ public:
+  /// `original` outlives the guard.
+  explicit OriginalGuard(const Mesh& original) : original_(original), index_(original) {}
+
+  /// Returns the distance from the original of the farthest of all faces.
+  double farthest(const Mesh& level);
+
+  /// Puts back vertices of faces that their new positions would take farther than `reach` from the original, or turn
+  /// away from it; returns whether there was none.
+  bool keep_faces_near(const Mesh& level, double reach, std::vector<Vec3f>& positions);
+
+ private:
+  using Corners = std::array<Vec3, 3>;
+  /// How a face stood to the original when it was last looked at.
+  struct Standing {
+    Corners corners;
+    double distance = std::numeric_limits<double>::infinity();  // of the farthest of its points
+    double facing = -1;     // the cosine of the least angle between its normal and the original's at one of its points
+    Index near = kNoIndex;  // an original face there
+  };
+
+  static Corners corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions);
+  Standing look_at(const Corners& corners, Index near) const;
+  static bool is_surely_fine(const Standing& last, const Corners& corners, double reach);
+
+  const Mesh& original_;
+  SurfaceIndex index_;
+  std::vector<Standing> standing_;  // by face
+};
 
 }  // namespace lodestone::detail

@@ -48,21 +48,13 @@ struct Effort {
 constexpr Effort kEffort = {1, 3, 0.985};
 constexpr Effort kEffortForFew = {6, 12, 0.999};
 
-constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
-
-/// How a face stands to the original, by some of its points.
-struct Standing {
-  double distance;  // of the farthest
-  bool looks_away;  // from the original's faces, everywhere
-};
-
 class Fitting {
  public:
   Fitting(const Mesh& original, Mesh& level, const PlacementOptions& options)
       : level_(level),
         options_(options),
-        original_(original),
-        original_index_(original),
+        is_fine_(static_cast<double>(level.face_count()) >= kFineShare * static_cast<double>(original.face_count())),
+        guard_(original),
         edges_(list_edges(level)),
         samples_(original, options.samples_per_face * level.face_count()),
         lines_(original) {
@@ -82,14 +74,12 @@ class Fitting {
   void assemble(SparseSystem& system) const;
   void add_lines(SparseSystem& system) const;
   void move();
-  Standing standing(const Mesh& mesh, Index face) const;
-  double reach() const;
-  bool keep_faces_near(std::vector<Vec3f>& positions) const;
+  double reach();
 
   Mesh& level_;
   const PlacementOptions& options_;
-  const Mesh& original_;
-  SurfaceIndex original_index_;
+  bool is_fine_;
+  OriginalGuard guard_;
   double reach_ = 0;      // how far a face may be from the original
   double softening_ = 0;  // distance; where it is not 0 sums of distances are minimised, not of squares
   std::vector<MeshEdge> edges_;
@@ -121,7 +111,7 @@ void Fitting::assign() {
 
 /// Chooses sums of distances for fine levels.
 void Fitting::choose_norm() {
-  if (static_cast<double>(level_.face_count()) < kFineShare * static_cast<double>(original_.face_count())) return;
+  if (!is_fine_) return;
   double area = 0;
   for (const SurfaceSample& sample : samples_.all()) area += sample.weight;
   if (area > 0) softening_ = kSoftening * std::sqrt(error() / area);
@@ -210,58 +200,15 @@ void Fitting::move() {
     positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
   do {
     keep_faces_upright(level_, positions);
-  } while (!keep_faces_near(positions));
+  } while (!guard_.keep_faces_near(level_, reach_, positions));
   level_.positions = std::move(positions);
 }
 
-Standing Fitting::standing(const Mesh& mesh, Index face) const {
-  Standing result{0, true};
-  const Vec3 normal = area_vector(mesh, face);
-  Index hint = kNoIndex;
-  const auto look_at = [&](const Vec3& point) {
-    const SurfaceIndex::Hit hit = original_index_.nearest(point, std::numeric_limits<double>::infinity(), hint);
-    result.distance = std::max(result.distance, hit.distance);
-    hint = hit.face;
-  };
-  for (Index k = 0; k < 3; ++k) look_at(mesh.corner_position(3 * face + k));
-  for (std::size_t k = 0; k < kPointsOfFace; ++k) {
-    look_at(point_on_face(mesh, face, k));
-    if (dot(normal, area_vector(original_, hint)) >= 0) result.looks_away = false;
-  }
-  return result;
-}
-
 /// How far the two surfaces are from each other now.
-double Fitting::reach() const {
-  double distance = 0;
+double Fitting::reach() {
+  double distance = guard_.farthest(level_);
   for (const SurfaceSample& sample : samples_.all()) distance = std::max(distance, std::sqrt(sample.squared_distance));
-  for (Index f = 0; f < level_.face_count(); ++f) distance = std::max(distance, standing(level_, f).distance);
   return distance;
-}
-
-/// Puts back vertices of faces that their new positions would take out of reach or turn away from the original; returns
-/// whether there was none.
-bool Fitting::keep_faces_near(std::vector<Vec3f>& positions) const {
-  Mesh moved;
-  moved.positions = positions;
-  moved.wedge_vertex = level_.wedge_vertex;
-  moved.corner_wedge = level_.corner_wedge;
-  bool all_near = true;
-  for (Index f = 0; f < level_.face_count(); ++f) {
-    const auto is_moved = [&](Index k) {
-      const Index v = level_.corner_vertex(3 * f + k);
-      return !(positions[v] == level_.positions[v]);
-    };
-    if (!(is_moved(0) || is_moved(1) || is_moved(2))) continue;
-    const Standing now = standing(moved, f);
-    if (now.distance <= reach_ && (!now.looks_away || standing(level_, f).looks_away)) continue;
-    all_near = false;
-    for (Index k = 0; k < 3; ++k) {
-      const Index v = level_.corner_vertex(3 * f + k);
-      positions[v] = level_.positions[v];
-    }
-  }
-  return all_near;
 }
 
 void Fitting::run() {
