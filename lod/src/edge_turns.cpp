@@ -16,7 +16,7 @@ constexpr double kGain = 0.98;  // turned where the squared distances fall below
 
 class EdgeTurner {
  public:
-  EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<const SurfaceSample> samples)
+  EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples)
       : mesh_(mesh),
         edges_(edges),
         samples_(samples),
@@ -51,7 +51,16 @@ class EdgeTurner {
     set_face(quad.face[0], {quad.a, quad.d, quad.c});
     set_face(quad.face[1], {quad.d, quad.b, quad.c});
     added_.push_back(std::minmax(vertex(quad.c), vertex(quad.d)));
+    for (const Index face : quad.face)
+      for (const Index i : samples_of_face_[face]) place(samples_[i], quad);
     return true;
+  }
+
+  void place(SurfaceSample& sample, const Quad& quad) const {
+    SurfaceSample other = sample;
+    sample.place_on(mesh_, quad.face[0]);
+    other.place_on(mesh_, quad.face[1]);
+    if (other.squared_distance < sample.squared_distance) sample = other;
   }
 
   Index vertex(Index wedge) const { return mesh_.wedge_vertex[wedge]; }
@@ -108,7 +117,7 @@ class EdgeTurner {
 
   Mesh& mesh_;
   std::span<const MeshEdge> edges_;
-  std::span<const SurfaceSample> samples_;
+  std::span<SurfaceSample> samples_;
   Grouping samples_of_face_;
   TextureAreas textures_;
   std::vector<std::uint8_t> taken_;
@@ -117,7 +126,7 @@ class EdgeTurner {
 
 }  // namespace
 
-std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<const SurfaceSample> samples) {
+std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples) {
   return EdgeTurner(mesh, edges, samples).run();
 }
 

@@ -6,6 +6,8 @@
 
 #include <lodestone/core/mesh.h>
 
+#include "triangle.h"
+
 namespace lodestone::detail {
 
 /// A point of the original surface, and where on the level it belongs at present.
@@ -15,6 +17,14 @@ struct SurfaceSample {
   Index face = kNoIndex;
   std::array<double, 3> weights{};
   double squared_distance = 0;
+
+  /// Takes the nearest point of a face for its place.
+  void place_on(const Mesh& level, Index on_face) {
+    face = on_face;
+    const Barycentric nearest = nearest_weights(position, triangle_of(level, on_face));
+    weights = nearest.weights;
+    squared_distance = nearest.squared_distance;
+  }
 };
 
 /// Points of the original: its vertices and its faces' centroids, or an even choice of about `most` of them.

@@ -102,10 +102,7 @@ void Fitting::assign() {
   for (SurfaceSample& sample : samples_.all()) {
     const SurfaceIndex::Hit hit =
         surface.nearest(sample.position, std::numeric_limits<double>::infinity(), sample.face);
-    sample.face = hit.face;
-    const Barycentric at = nearest_weights(sample.position, triangle_of(level_, hit.face));
-    sample.weights = at.weights;
-    sample.squared_distance = at.squared_distance;
+    sample.place_on(level_, hit.face);
   }
 }
 
@@ -135,9 +132,7 @@ double Fitting::square_weight(double squared_distance) const {
 }
 
 void Fitting::turn_edges() {
-  if (detail::turn_edges(level_, edges_, samples_.all()) == 0) return;
-  edges_ = list_edges(level_);
-  assign();
+  if (detail::turn_edges(level_, edges_, samples_.all()) > 0) edges_ = list_edges(level_);
 }
 
 void Fitting::assemble(SparseSystem& system) const {
