@@ -92,8 +92,7 @@ std::vector<RimEdge> fine_rim(const Connectivity& mesh, const SectorPatch& secto
 }
 
 std::vector<RimEdge> coarse_rim(const Connectivity& mesh, const SectorPatch& sector) {
-  if (sector.polygon.size() == 2)
-    return {{sector.lone_outer, sector.lone_crease}};
+  if (sector.polygon.size() == 2) return {{sector.lone_outer, sector.lone_crease}};
   CoarseEdges edges(sector);
   std::vector<RimEdge> rim(sector.face_count());
   for (std::size_t i = 0; i < rim.size(); ++i) rim[i] = {mesh.opposite(edges.rim(i)), mesh.is_crease(edges.rim(i))};
@@ -137,7 +136,8 @@ SectorEnds write_coarse_faces(const PatchAccess& access, SectorPatch& sector) {
 void join_ends(const PatchAccess& access, const RemovalRecord& record, const std::vector<SectorEnds>& ends) {
   const std::size_t count = record.sectors.size();
   // The first and the last end of an open star face its border.
-  if (record.open_star) access.join(ends.front().entry, kNoIndex, false), access.join(ends.back().exit, kNoIndex, false);
+  if (record.open_star)
+    access.join(ends.front().entry, kNoIndex, false), access.join(ends.back().exit, kNoIndex, false);
   const auto is_open = [&](std::size_t s) { return record.sectors[s].shape == SectorShape::Open; };
   if (count == 2 && is_open(0) && is_open(1) && !record.open_star) {
     access.join(ends[0].exit, ends[1].entry, record.sectors[0].starts_at_crease || record.sectors[1].starts_at_crease);
@@ -172,7 +172,8 @@ void join_spokes(const PatchAccess& access, const RemovalRecord& record) {
   const std::size_t count = record.sectors.size();
   if (record.sectors[0].shape == SectorShape::Closed) {
     const SectorPatch& ring = record.sectors[0];
-    access.join(next_corner(center_corner(ring, ring.face_count() - 1)), previous_corner(center_corner(ring, 0)), false);
+    access.join(next_corner(center_corner(ring, ring.face_count() - 1)), previous_corner(center_corner(ring, 0)),
+                false);
     return;
   }
   for (std::size_t s = 0; s < count; ++s) {
@@ -258,7 +259,8 @@ void describe_collapse(const Connectivity& mesh, const Star& star, Index target,
     const Index end = s + 1 < begin.size() ? begin[s + 1] : face_count;
     describe_faces(mesh, star, begin[s], end, sector);
     sector.polygon.push_back(mesh.wedge(previous_corner(star.corners[end - 1])));
-    const bool touches_target = begin[s] == target || end == target || (star.closed && target == 0 && end == face_count);
+    const bool touches_target =
+        begin[s] == target || end == target || (star.closed && target == 0 && end == face_count);
     sector.shape = touches_target ? SectorShape::Open : SectorShape::Moved;
     if (!touches_target) sector.polygon.push_back(target_wedge);
   }
@@ -313,10 +315,22 @@ SectorPatch lone_face(const Connectivity& mesh, Index corner) {
   return sector;
 }
 
+/// Whether no face lies across an edge of these that is not one of them; in release builds nobody asks.
+[[maybe_unused]] bool is_whole_component(const Connectivity& mesh, const std::vector<Index>& faces) {
+  return std::all_of(faces.begin(), faces.end(), [&](Index face) {
+    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
+      const Index across = mesh.opposite(corner);
+      if (across != kNoIndex && !std::binary_search(faces.begin(), faces.end(), face_of_corner(across))) return false;
+    }
+    return true;
+  });
+}
+
 }  // namespace
 
 std::vector<RemovalRecord> remove_component(Connectivity& mesh, std::span<const Index> vertices) {
   const std::vector<Index> faces = faces_of(mesh, vertices);
+  assert(is_whole_component(mesh, faces));
   std::vector<std::array<Index, 3>> corners;  // (site, vertex, corner): in this order copies stand together
   for (const Index face : faces)
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner)

@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "face_guard.h"
 #include "grouping.h"
 #include "texture_areas.h"
 #include "triangle.h"
@@ -16,9 +15,12 @@ constexpr double kGain = 0.98;  // turned where the squared distances fall below
 
 class EdgeTurner {
  public:
-  EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples)
+  EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
+             const OriginalGuard& guard)
       : mesh_(mesh),
         edges_(edges),
+        norm_(norm),
+        guard_(guard),
         samples_(samples),
         samples_of_face_(mesh.face_count(), samples.size(), [&](Index i) { return samples[i].face; }),
         textures_(mesh) {}
@@ -46,7 +48,7 @@ class EdgeTurner {
                     mesh_.corner_wedge[corner],
                     mesh_.corner_wedge[across]};
     if (taken_[quad.face[0]] != 0 || taken_[quad.face[1]] != 0 || has_edge(quad.c, quad.d)) return false;
-    if (!keeps_shape(quad) || turns_texture(quad) || !is_nearer(quad)) return false;
+    if (!keeps_shape(quad) || turns_texture(quad) || !is_nearer(quad) || !is_let_pass(quad)) return false;
     for (std::size_t i = 0; i < 2; ++i) taken_[quad.face[i]] = 1;
     set_face(quad.face[0], {quad.a, quad.d, quad.c});
     set_face(quad.face[1], {quad.d, quad.b, quad.c});
@@ -107,16 +109,23 @@ class EdgeTurner {
     for (const Index face : q.face)
       for (const Index i : samples_of_face_[face]) {
         const SurfaceSample& sample = samples_[i];
-        before += sample.weight * sample.squared_distance;
+        before += sample.weight * norm_.error(sample.squared_distance);
         const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
         const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
-        after += sample.weight * std::min(near_first, near_second);
+        after += sample.weight * norm_.error(std::min(near_first, near_second));
       }
     return after < kGain * before;
   }
 
+  bool is_let_pass(const Quad& q) const {
+    const Vec3 a = position(q.a), b = position(q.b), c = position(q.c), d = position(q.d);
+    return guard_.lets_pass({{{a, d, c}, {d, b, c}}}, {{{a, b, c}, {b, a, d}}});
+  }
+
   Mesh& mesh_;
   std::span<const MeshEdge> edges_;
+  SampleNorm norm_;
+  const OriginalGuard& guard_;
   std::span<SurfaceSample> samples_;
   Grouping samples_of_face_;
   TextureAreas textures_;
@@ -126,8 +135,9 @@ class EdgeTurner {
 
 }  // namespace
 
-std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples) {
-  return EdgeTurner(mesh, edges, samples).run();
+std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
+                       const OriginalGuard& guard) {
+  return EdgeTurner(mesh, edges, samples, norm, guard).run();
 }
 
 }  // namespace lodestone::detail

@@ -5,13 +5,16 @@
 #include <lodestone/core/mesh.h>
 
 #include "constrained_edges.h"
+#include "face_guard.h"
 #include "fit_samples.h"
 
 namespace lodestone::detail {
 
 /// Turns edges inside quadrilaterals where that brings the samples of the two faces nearer; each face takes part at
-/// most once. Textures do not turn over, faces neither, and no edge appears twice. Samples go over to the nearer of
-/// their quad's new faces. Returns how many edges were turned: `edges` is out of date then.
-std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples);
+/// most once. Textures do not turn over, faces neither, the guard lets the new ones pass, and no edge appears twice.
+/// Samples go over to the nearer of their quad's new faces. Returns how many edges were turned: `edges` is out of date
+/// then.
+std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
+                       const OriginalGuard& guard);
 
 }  // namespace lodestone::detail

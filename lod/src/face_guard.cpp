@@ -13,7 +13,7 @@ constexpr double kMinShape = 0.02;  // a face's height over its longest edge
 
 constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
 constexpr double kFacesWell = 0.5;        // a face that looked within 60° of the original's way …
-constexpr double kTurnsLittle = 0.87;     // … and has turned by less than 30° since does not look away
+constexpr double kTurnsLittle = 0.87;     // … and has turned by less than 30° since does not look away from there
 
 double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
@@ -62,16 +62,16 @@ double OriginalGuard::farthest(const Mesh& level) {
   return distance;
 }
 
-bool OriginalGuard::keep_faces_near(const Mesh& level, double reach, std::vector<Vec3f>& positions) {
+bool OriginalGuard::keep_faces_near(const Mesh& level, std::vector<Vec3f>& positions) {
   bool all_near = true;
   for (Index f = 0; f < level.face_count(); ++f) {
     const Corners before = corners_of(level, f, level.positions);
     const Corners now = corners_of(level, f, positions);
     Standing& standing = standing_[f];
-    if (now == before || is_surely_fine(standing, now, reach)) continue;
+    if (now == before || is_surely_fine(standing, now)) continue;
     standing = look_at(now, standing.near);
     const bool looks_away = standing.facing < 0 && look_at(before, standing.near).facing >= 0;
-    if (standing.distance <= reach && !looks_away) continue;
+    if (standing.distance <= reach_ && !looks_away) continue;
     all_near = false;
     for (Index k = 0; k < 3; ++k) {
       const Index v = level.corner_vertex(3 * f + k);
@@ -79,6 +79,17 @@ bool OriginalGuard::keep_faces_near(const Mesh& level, double reach, std::vector
     }
   }
   return all_near;
+}
+
+bool OriginalGuard::lets_pass(const std::array<Corners, 2>& now, const std::array<Corners, 2>& before) const {
+  bool looks_away = false;
+  for (const Corners& corners : now) {
+    const Standing standing = look_at(corners, kNoIndex);
+    if (standing.distance > reach_) return false;
+    looks_away = looks_away || standing.facing < 0;
+  }
+  const auto looked_away = [&](const Corners& corners) { return look_at(corners, kNoIndex).facing < 0; };
+  return !looks_away || std::any_of(before.begin(), before.end(), looked_away);
 }
 
 OriginalGuard::Corners OriginalGuard::corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions) {
@@ -105,10 +116,10 @@ OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index nea
 }
 
 /// Whether a face that is now at `corners` need not be looked at: no point of it has moved farther than a corner has.
-bool OriginalGuard::is_surely_fine(const Standing& last, const Corners& corners, double reach) {
+bool OriginalGuard::is_surely_fine(const Standing& last, const Corners& corners) const {
   double way = 0;
   for (std::size_t k = 0; k < 3; ++k) way = std::max(way, length(corners[k] - last.corners[k]));
-  if (last.distance + way > reach || last.facing < kFacesWell) return false;
+  if (last.distance + way > reach_ || last.facing < kFacesWell) return false;
   const auto normal = [](const Corners& c) { return normalized(cross(c[1] - c[0], c[2] - c[0])); };
   return dot(normal(corners), normal(last.corners)) > kTurnsLittle;
 }

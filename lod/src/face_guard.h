@@ -15,8 +15,9 @@ bool is_upright(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before)
 /// Puts back vertices whose new positions would turn faces over or make them slivers, until none does.
 void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions);
 
-/// Keeps the faces of a level that is being fitted near the original, and facing as it does. Looks at some points of a
-/// face, and again only once it has moved so far that the answer may have changed.
+/// Keeps the faces of a level that is being fitted near the original, and facing as it does, by some points of each. A
+/// face is looked at again once it has moved so far that it may be out of reach, or has turned; that another sheet may
+/// have become the nearer one meanwhile is let pass.
 class OriginalGuard {
  public:
   /// `original` outlives the guard.
@@ -25,12 +26,19 @@ class OriginalGuard {
   /// Returns the distance from the original of the farthest of all faces.
   double farthest(const Mesh& level);
 
-  /// Puts back vertices of faces that their new positions would take farther than `reach` from the original, or turn
-  /// away from it; returns whether there was none.
-  bool keep_faces_near(const Mesh& level, double reach, std::vector<Vec3f>& positions);
+  /// From now on no face may be farther than that from the original.
+  void set_reach(double reach) { reach_ = reach; }
+
+  /// Puts back vertices of faces that their new positions would take out of reach, or turn away from the original;
+  /// returns whether there was none.
+  bool keep_faces_near(const Mesh& level, std::vector<Vec3f>& positions);
+
+  using Corners = std::array<Vec3, 3>;
+
+  /// Whether two faces may replace two others: within reach, and none looks away from the original where none did.
+  bool lets_pass(const std::array<Corners, 2>& now, const std::array<Corners, 2>& before) const;
 
  private:
-  using Corners = std::array<Vec3, 3>;
   /// How a face stood to the original when it was last looked at.
   struct Standing {
     Corners corners;
@@ -41,10 +49,11 @@ class OriginalGuard {
 
   static Corners corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions);
   Standing look_at(const Corners& corners, Index near) const;
-  static bool is_surely_fine(const Standing& last, const Corners& corners, double reach);
+  bool is_surely_fine(const Standing& last, const Corners& corners) const;
 
   const Mesh& original_;
   SurfaceIndex index_;
+  double reach_ = std::numeric_limits<double>::infinity();
   std::vector<Standing> standing_;  // by face
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,19 @@ struct SurfaceSample {
     weights = nearest.weights;
     squared_distance = nearest.squared_distance;
   }
+};
+
+/// What is summed over samples: squares of distances, or distances, of which those far below `softening` count by their
+/// squares, too.
+struct SampleNorm {
+  double softening = 0;  ///< mesh units; 0: squares
+
+  double error(double squared_distance) const { return softening > 0 ? softened(squared_distance) : squared_distance; }
+  /// What a square counts for where the sum is found by iteratively reweighted least squares.
+  double weight(double squared_distance) const { return softening > 0 ? softening / softened(squared_distance) : 1; }
+
+ private:
+  double softened(double squared_distance) const { return std::sqrt(squared_distance + softening * softening); }
 };
 
 /// Points of the original: its vertices and its faces' centroids, or an even choice of about `most` of them.

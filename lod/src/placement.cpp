@@ -68,8 +68,6 @@ class Fitting {
   void assign();
   void choose_norm();
   double error() const;
-  double softened(double squared_distance) const;
-  double square_weight(double squared_distance) const;
   void turn_edges();
   void assemble(SparseSystem& system) const;
   void add_lines(SparseSystem& system) const;
@@ -80,8 +78,7 @@ class Fitting {
   const PlacementOptions& options_;
   bool is_fine_;
   OriginalGuard guard_;
-  double reach_ = 0;      // how far a face may be from the original
-  double softening_ = 0;  // distance; where it is not 0 sums of distances are minimised, not of squares
+  SampleNorm norm_;
   std::vector<MeshEdge> edges_;
   SurfaceSamples samples_;
   LineSamples lines_;
@@ -111,35 +108,25 @@ void Fitting::choose_norm() {
   if (!is_fine_) return;
   double area = 0;
   for (const SurfaceSample& sample : samples_.all()) area += sample.weight;
-  if (area > 0) softening_ = kSoftening * std::sqrt(error() / area);
+  if (area > 0) norm_.softening = kSoftening * std::sqrt(error() / area);
 }
 
 /// The sum that is minimised, over the samples as last assigned.
 double Fitting::error() const {
   double sum = 0;
-  for (const SurfaceSample& sample : samples_.all())
-    sum += sample.weight * (softening_ > 0 ? softened(sample.squared_distance) : sample.squared_distance);
+  for (const SurfaceSample& sample : samples_.all()) sum += sample.weight * norm_.error(sample.squared_distance);
   return sum;
 }
 
-double Fitting::softened(double squared_distance) const {
-  return std::sqrt(squared_distance + softening_ * softening_);
-}
-
-/// What a square counts for in that sum: iteratively reweighted least squares.
-double Fitting::square_weight(double squared_distance) const {
-  return softening_ > 0 ? softening_ / softened(squared_distance) : 1;
-}
-
 void Fitting::turn_edges() {
-  if (detail::turn_edges(level_, edges_, samples_.all()) > 0) edges_ = list_edges(level_);
+  if (detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_) > 0) edges_ = list_edges(level_);
 }
 
 void Fitting::assemble(SparseSystem& system) const {
   system.clear();
   for (const SurfaceSample& sample : samples_.all()) {
     const Vec3 normal = normalized(area_vector(level_, sample.face));
-    const double weight = sample.weight * square_weight(sample.squared_distance);
+    const double weight = sample.weight * norm_.weight(sample.squared_distance);
     const Symmetric3 metric = Symmetric3::identity(kAlong * weight) + Symmetric3::outer(normal, (1 - kAlong) * weight);
     system.add(&corner_vertex_[3 * std::size_t{sample.face}], sample.weights.data(), 3, sample.position, metric);
   }
@@ -175,7 +162,7 @@ void Fitting::add_lines(SparseSystem& system) const {
     if (!(length_of_edge > 0)) continue;
     const double t = std::clamp(dot(hit.point - a, b - a) / (length_of_edge * length_of_edge), 0.0, 1.0);
     const double weights[2] = {1 - t, t};
-    const double weight = kLineWeight * sample.length * length_of_edge * square_weight(hit.distance * hit.distance);
+    const double weight = kLineWeight * sample.length * length_of_edge * norm_.weight(hit.distance * hit.distance);
     const Symmetric3 metric =
         Symmetric3::identity(weight) + Symmetric3::outer((b - a) * (1 / length_of_edge), -(1 - kAlong) * weight);
     system.add(edge.vertices.data(), weights, 2, sample.position, metric);
@@ -195,7 +182,7 @@ void Fitting::move() {
     positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
   do {
     keep_faces_upright(level_, positions);
-  } while (!guard_.keep_faces_near(level_, reach_, positions));
+  } while (!guard_.keep_faces_near(level_, positions));
   level_.positions = std::move(positions);
 }
 
@@ -209,7 +196,7 @@ double Fitting::reach() {
 void Fitting::run() {
   assign();
   choose_norm();
-  reach_ = reach();
+  guard_.set_reach(reach());
   double best = error();
   Mesh best_level = level_;
   const Effort effort = samples_.all().size() <= kFewSamples ? kEffortForFew : kEffort;

@@ -691,8 +691,8 @@ double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
 }
 
 /// What borders and feature lines are charged for their own displacement: √(√A · D) each, a length, with A the area it
-/// sweeps and D the distance of all its removed vertices to the new edge; at least 1.5 D, which counts where the edge
-/// is short beside it, as at the tip of an ear.
+/// sweeps and D the distance of all its removed vertices to the new edge; at least a multiple of D, which counts where
+/// the edge is short beside it, as at the tip of an ear.
 double RemovalEvaluator::line_cost(Index vertex) const {
   double sum = 0;
   for (const Line& line : lines_) {
