@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/cursor.h>

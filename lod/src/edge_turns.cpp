@@ -11,7 +11,7 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kGain = 0.98;  // turned where the squared distances fall below this share
+constexpr double kGain = 0.98;  // turned where the samples' sum falls below this share
 
 class EdgeTurner {
  public:

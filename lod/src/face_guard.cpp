@@ -1,7 +1,6 @@
 #include "face_guard.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "triangle.h"
 

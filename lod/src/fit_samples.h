@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include <lodestone/core/mesh.h>

@@ -19,7 +19,6 @@
 #include "face_guard.h"
 #include "fit_samples.h"
 #include "sparse_system.h"
-#include "triangle.h"
 
 namespace lodestone {
 namespace {
@@ -38,12 +37,11 @@ constexpr std::size_t kFewSamples = 100'000;  // small levels take a few more it
 constexpr double kFineShare = 0.3;
 constexpr double kSoftening = 0.1;
 
-// Less gain than this, of the sum before, is not worth another iteration; edges are turned in the first
-// ones, and the vertices follow.
+// How many iterations a level is worth. Edges are turned in the first ones, and the vertices follow.
 struct Effort {
-  int times;  // as many iterations as asked for
-  int turning;
-  double settled;
+  int times;       // as many as asked for, at most
+  int turning;     // of them with edges turned
+  double settled;  // of the sum before: less gain than this is not worth another
 };
 constexpr Effort kEffort = {1, 3, 0.985};
 constexpr Effort kEffortForFew = {6, 12, 0.999};

@@ -31,7 +31,7 @@ inline constexpr int kMaxSearchedPolygon = 16;
 inline constexpr double kDistanceExponent = 0.95;
 double hybrid_cost(double moved, double turned);
 
-/// What the evaluation of a removal found. `Turn`: a face would turn by more than a right angle, which may be let pass;
+/// What the evaluation of a removal found. `Turn`: a face would turn too far, which may be let pass;
 /// `Flip`: it would degenerate, or turn a texture over.
 enum class Verdict : std::uint8_t { Legal, Locked, Turn, Flip, Link, Ring };
 
