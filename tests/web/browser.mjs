@@ -15,7 +15,7 @@ const ARGUMENTS = [
   '--no-first-run',
 ];
 
-const patience = 120_000; // milliseconds; a busy machine draws slowly in software
+const patience = 360_000; // milliseconds; a busy machine draws slowly in software
 
 function isExecutable(path) {
   try {

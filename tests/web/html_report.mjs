@@ -34,7 +34,7 @@ async function open(browser, file, view, job) {
   const { name, ...settings } = view;
   const context = await browser.newContext(settings);
   const page = await context.newPage();
-  page.setDefaultTimeout(60_000);
+  page.setDefaultTimeout(180_000);
   const problems = [];
   page.on('pageerror', (error) => problems.push(error.message));
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && !message.text().includes('GPU stall')
