@@ -1,5 +1,6 @@
 #include <lodestone/core/assemble.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -70,6 +71,32 @@ TEST_CASE("assemble drops what is no triangle and counts it") {
   CHECK(assembled->report.duplicate_faces == 1);
   CHECK(assembled->report.unused_points == 1);
   CHECK(assembled->mesh.face_count() == 2);
+}
+
+TEST_CASE("assemble drops a face as a duplicate only where it equals another in every attribute and in its material") {
+  const TriangleSoup once = cube(2);
+  const std::size_t faces = once.indices.size() / 3;
+  TriangleSoup twice = layered(once, 2);
+  CHECK(mesh_of(twice).face_count() == 2 * faces);
+  twice.face_material.clear();
+  CHECK(assemble(twice)->report.duplicate_faces == faces);
+  CHECK(mesh_of(twice).face_count() == faces);
+  const std::size_t points = twice.positions.size();
+  for (const char* name : {"NORMAL", "TEXCOORD_1", "COLOR_0", "JOINTS_0", "WEIGHTS_0", "TARGET_0:POSITION", "_ID"}) {
+    INFO(name);
+    Attribute attribute{name, ComponentType::UInt8, 4, false, {}};
+    attribute.data.resize(4 * points);
+    twice.attributes = {attribute};
+    CHECK(mesh_of(twice).face_count() == faces);
+    // One byte at one point: the faces there are sheets of their own, those elsewhere are duplicates.
+    const Index odd = twice.indices.back();
+    twice.attributes[0].data[4 * odd + 3] = std::byte{1};
+    const auto kept = static_cast<std::size_t>(std::count(twice.indices.begin(), twice.indices.end(), odd));
+    const auto assembled = assemble(twice);
+    REQUIRE(assembled);
+    CHECK(assembled->report.duplicate_faces == faces - kept);
+    CHECK(assembled->mesh.face_count() == faces + kept);
+  }
 }
 
 TEST_CASE("assemble cuts where sheets meet, without losing a triangle or moving a corner") {

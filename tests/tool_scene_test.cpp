@@ -285,3 +285,20 @@ TEST_CASE("two runs over a scene write the same bytes") {
   REQUIRE(shop.build({}).exit_code == 0);
   CHECK(file_text(shop.glb) == first);
 }
+
+TEST_CASE("faces in one place with other joints, weights or targets all stay, in the first level and in the stream") {
+  LODESTONE_SKIP_WITHOUT_MODELS();
+  const ScratchDirectory folder;
+  for (const auto& [name, faces] : {std::pair{"skinned", std::size_t{896}}, {"morphed", std::size_t{448}}}) {
+    INFO(name);
+    const std::string in = model(std::string("field/coincident-") + name + ".glb")->string();
+    const std::string out = (folder / "out.glb").string();
+    const std::string report = (folder / "r.json").string();
+    REQUIRE(run_program({"build", in, "-o", out, "--report", report}).exit_code == 0);
+    CHECK(faces_of(Json::parse(file_text(report)), 0, 0) == faces);
+    const std::string whole = (folder / "whole.glb").string();
+    const ProgramRun extracted = run_program({"extract", out, "--error", "0", "-o", whole});
+    CHECK(extracted.exit_code == 0);
+    CHECK_THAT(extracted.out, contains(std::to_string(faces) + " faces"));
+  }
+}

@@ -133,19 +133,23 @@ void filter_faces(CleanFaces& faces, const Keep& keep) {
   if (!faces.material.empty()) faces.material.resize(kept);
 }
 
-void drop_degenerate_and_duplicate(CleanFaces& faces, const std::vector<Index>& first_point, AssemblyReport& report) {
-  const auto welded = [&](Index f) {
+void drop_degenerate(CleanFaces& faces, const std::vector<Index>& first_point, AssemblyReport& report) {
+  filter_faces(faces, [&](Index f) {
     const Index* c = &faces.corners[3 * std::size_t{f}];
-    return rotated_to_smallest({first_point[c[0]], first_point[c[1]], first_point[c[2]]});
-  };
-  std::vector<std::array<Index, 4>> seen;  // vertices and material: a decal may lie on a face of another material
+    const std::array<Index, 3> face{first_point[c[0]], first_point[c[1]], first_point[c[2]]};
+    const bool degenerate = face[0] == face[1] || face[1] == face[2] || face[0] == face[2];
+    report.degenerate_faces += degenerate ? 1 : 0;
+    return !degenerate;
+  });
+}
+
+/// A face that differs from another in any attribute, or in its material, is a sheet of its own on the same place.
+void drop_duplicates(CleanFaces& faces, const std::vector<Index>& first_wedge, AssemblyReport& report) {
+  std::vector<std::array<Index, 4>> seen;  // wedges and material
   HashIndex table(faces.corners.size() / 3);
   filter_faces(faces, [&](Index f) {
-    const auto face = welded(f);
-    if (face[0] == face[1] || face[1] == face[2] || face[0] == face[2]) {
-      ++report.degenerate_faces;
-      return false;
-    }
+    const Index* c = &faces.corners[3 * std::size_t{f}];
+    const auto face = rotated_to_smallest({first_wedge[c[0]], first_wedge[c[1]], first_wedge[c[2]]});
     const std::array<Index, 4> key{face[0], face[1], face[2], faces.material.empty() ? 0 : faces.material[f]};
     const std::uint64_t hash = mix_bits(mix_bits(mix_bits(mix_bits(key[0]) + key[1]) + key[2]) + key[3]);
     const auto candidate = static_cast<Index>(seen.size());
@@ -291,8 +295,9 @@ Result<AssembledMesh> assemble(const TriangleSoup& soup) {
   AssemblyReport& report = result.report;
   CleanFaces faces = drop_nonfinite(soup, report);
   const std::vector<Index> first_point = weld_positions(soup, faces.corners);
-  drop_degenerate_and_duplicate(faces, first_point, report);
+  drop_degenerate(faces, first_point, report);
   const std::vector<Index> first_wedge = weld_wedges(soup, faces.corners, first_point);
+  drop_duplicates(faces, first_wedge, report);
   result.mesh = number_by_first_use(soup, faces, first_point, first_wedge);
 
   std::vector<bool> used(soup.positions.size(), false);

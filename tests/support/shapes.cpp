@@ -513,6 +513,52 @@ TriangleSoup dirty_grid(int n) {
   return soup;
 }
 
+TriangleSoup stacked(const TriangleSoup& shape, int count) {
+  TriangleSoup soup = layered(shape, count);
+  soup.face_material.clear();
+  Attribute sheet{"_SHEET", ComponentType::UInt8, 1, false, {}};
+  for (int i = 0; i < count; ++i) sheet.data.insert(sheet.data.end(), shape.positions.size(), std::byte(i));
+  soup.attributes.push_back(std::move(sheet));
+  return soup;
+}
+
+TriangleSoup layered(const TriangleSoup& shape, int count) {
+  TriangleSoup soup;
+  soup.attributes = shape.attributes;
+  for (Attribute& attribute : soup.attributes) attribute.data.clear();
+  for (int i = 0; i < count; ++i) {
+    append(soup, shape, {});
+    for (std::size_t a = 0; a < shape.attributes.size(); ++a) {
+      const std::vector<std::byte>& data = shape.attributes[a].data;
+      soup.attributes[a].data.insert(soup.attributes[a].data.end(), data.begin(), data.end());
+    }
+    soup.face_material.insert(soup.face_material.end(), shape.indices.size() / 3, static_cast<Index>(i));
+  }
+  return soup;
+}
+
+TriangleSoup two_sided(const TriangleSoup& shape) {
+  TriangleSoup soup = shape;
+  for (std::size_t t = 0; t < shape.indices.size(); t += 3)
+    add_triangle(soup, shape.indices[t], shape.indices[t + 2], shape.indices[t + 1]);
+  return soup;
+}
+
+TriangleSoup with_decal(const TriangleSoup& shape, double radius) {
+  TriangleSoup soup = shape;
+  soup.face_material.assign(shape.indices.size() / 3, 0);
+  const auto is_near = [&](Index point) {
+    return length(Vec3(shape.positions[point]) - Vec3(shape.positions[0])) <= radius;
+  };
+  for (std::size_t t = 0; t < shape.indices.size(); t += 3) {
+    const Index a = shape.indices[t], b = shape.indices[t + 1], c = shape.indices[t + 2];
+    if (!is_near(a) || !is_near(b) || !is_near(c)) continue;
+    add_triangle(soup, a, b, c);
+    soup.face_material.push_back(1);
+  }
+  return soup;
+}
+
 std::vector<NamedShape> all_shapes() {
   return {
       {"empty", empty_soup(), true, 0},

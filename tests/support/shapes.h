@@ -80,6 +80,16 @@ TriangleSoup disagreeing_pair();
 /// A grid with degenerate, duplicate and non-finite triangles and an unused point added.
 TriangleSoup dirty_grid(int n);
 
+// Sheets that lie in one place, vertex by vertex, made of any shape without materials.
+/// `count` times the shape: an attribute "_SHEET" tells the sheets apart.
+TriangleSoup stacked(const TriangleSoup& shape, int count);
+/// `count` times the shape: sheet i has material i.
+TriangleSoup layered(const TriangleSoup& shape, int count);
+/// The shape, and every face of it once more, turned over.
+TriangleSoup two_sided(const TriangleSoup& shape);
+/// The shape in material 0, and in material 1 once more what lies within `radius` of its first point.
+TriangleSoup with_decal(const TriangleSoup& shape, double radius);
+
 /// A shape with what is known of it.
 struct NamedShape {
   std::string name;
