@@ -154,6 +154,47 @@ TEST_CASE("joints and weights stay those of the vertex") {
   }
 }
 
+TEST_CASE("what is fixed stays bit for bit, and so do faces between fixed vertices; the rest is fitted") {
+  std::size_t moved = 0;
+  for (const NamedShape& shape : manifold_shapes()) {
+    const Mesh mesh = mesh_of(shape.soup);
+    if (mesh.face_count() < 100) continue;
+    INFO(shape.name);
+    const Box box = bounding_box(mesh);
+    SimplifyOptions options;
+    options.measure_step = 0;
+    options.lock_border = true;
+    for (const Vec3f& p : mesh.positions)  // a third is kept as it is
+      options.importance.push_back(p.x < box.low.x + (box.high.x - box.low.x) / 3 ? 1000.0F : 1.0F);
+    const auto result = simplify(mesh, options);
+    REQUIRE(result);
+    PlacementOptions placement;
+    placement.fixed = result->locked;
+    const Mesh level = extract_level(result->mesh, Cursor(result->mesh));
+    const Mesh fitted = optimise_placement(mesh, level, placement);
+    std::set<Place> fixed, before, after;
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+      if (result->locked[v] != 0) fixed.insert(place_of(mesh, v));
+    const auto fixed_faces = [&](const Mesh& of) {
+      std::multiset<std::array<Place, 3>> faces;
+      for (Index f = 0; f < of.face_count(); ++f) {
+        std::array<Place, 3> face;
+        for (Index k = 0; k < 3; ++k) face[k] = place_of(of, of.corner_vertex(3 * f + k));
+        std::sort(face.begin(), face.end());
+        if (std::all_of(face.begin(), face.end(), [&](const Place& p) { return fixed.contains(p); })) faces.insert(face);
+      }
+      return faces;
+    };
+    const auto kept = fixed_faces(level), now = fixed_faces(fitted);
+    CHECK(std::includes(now.begin(), now.end(), kept.begin(), kept.end()));
+    for (Index v = 0; v < level.vertex_count(); ++v) before.insert(place_of(level, v));
+    for (Index v = 0; v < fitted.vertex_count(); ++v) after.insert(place_of(fitted, v));
+    CHECK(std::includes(after.begin(), after.end(), fixed.begin(), fixed.end()));
+    moved += before == after ? 0 : 1;
+  }
+  CHECK(moved > 2);
+}
+
 TEST_CASE("the same level is fitted to the same bytes") {
   const Mesh mesh = mesh_of(icosphere(4, 0.02, 3));
   const Mesh level = level_of(mesh, 0.1);

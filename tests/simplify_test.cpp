@@ -350,6 +350,28 @@ TEST_CASE("a locked border keeps every one of its vertices") {
   CHECK(result.blocked.locked == 48);
 }
 
+TEST_CASE("what is locked stays in every family, where sheets meet, too") {
+  for (const NamedShape& shape : all_shapes()) {
+    const Mesh mesh = mesh_of(shape.soup);
+    if (mesh.face_count() == 0) continue;
+    INFO(shape.name);
+    SimplifyOptions options;
+    options.lock_border = true;
+    Random random(shape.soup.indices.size());
+    for (Index v = 0; v < mesh.vertex_count(); ++v) options.importance.push_back(random.below(8) == 0 ? 1000.0F : 1.0F);
+    const SimplifyResult result = simplified(mesh, options);
+    std::set<Place> wanted = open_places(mesh), locked, left;
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      if (options.importance[v] >= kLockingImportance) wanted.insert(place_of(mesh, v));
+      if (!result.locked.empty() && result.locked[v] != 0) locked.insert(place_of(mesh, v));
+    }
+    CHECK(locked == wanted);
+    const Mesh base = extract_level(result.mesh, Cursor(result.mesh));
+    for (Index v = 0; v < base.vertex_count(); ++v) left.insert(place_of(base, v));
+    CHECK(std::includes(left.begin(), left.end(), wanted.begin(), wanted.end()));
+  }
+}
+
 TEST_CASE("holes that no fan fills are filled without turning a face over") {
   for (const int spikes : {4, 5, 6, 8}) {
     TriangleSoup soup;

@@ -98,9 +98,22 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->group(group);
   app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
   app.add_flag("--no-draco", no_draco, "Write plain geometry that needs no decoder")->group(group);
-  app.add_option("--qp", position_bits, "Bits of a Draco position (default 14)")
-      ->check(CLI::Range(1, 30))
-      ->type_name("BITS")
+  CLI::Option* bits = app.add_option("--qp", position_bits, "Bits of a Draco position (default 14)")
+                          ->check(CLI::Range(1, 30))
+                          ->type_name("BITS")
+                          ->group(group);
+  CLI::Option* step = app.add_option("--grid-step", grid_step,
+                                     "Round Draco positions to multiples of this, in the meshes' own units, instead of a "
+                                     "grid fitted to the file: tiles built one by one with --lock-border then fit together")
+                          ->check(CLI::PositiveNumber)
+                          ->type_name("STEP")
+                          ->excludes(bits)
+                          ->group(group);
+  app.add_option("--grid-origin", grid_origin, "Where multiples of --grid-step count from (default 0,0,0)")
+      ->expected(3)
+      ->delimiter(',')
+      ->type_name("X,Y,Z")
+      ->needs(step)
       ->group(group);
 }
 

@@ -39,6 +39,8 @@ struct BuildCommand {
   bool no_stream = false;
   bool no_draco = false;
   int position_bits = 14;
+  std::optional<double> grid_step;  ///< in place of bits
+  std::vector<double> grid_origin{0, 0, 0};
   bool quiet = false;
   bool strict = false;
 

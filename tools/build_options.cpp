@@ -90,6 +90,16 @@ Result<SimplifyOptions> simplify_options(const BuildCommand& options) {
   return simplify;
 }
 
+AssetOptions asset_options(const BuildCommand& options) {
+  AssetOptions asset;
+  asset.draco = !options.no_draco;
+  asset.draco_position_bits = options.position_bits;
+  if (!options.grid_step) return asset;
+  const auto origin = [&](std::size_t i) { return static_cast<float>(options.grid_origin[i]); };
+  asset.draco_position_grid = {{origin(0), origin(1), origin(2)}, static_cast<float>(*options.grid_step)};
+  return asset;
+}
+
 Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count) {
   Json json = {{"metric", options.metric},
                {"normalise", options.normalisation},
@@ -106,7 +116,11 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", !options.no_stream && !has_file_per_level(options)},
                {"draco", !options.no_draco}};
-  json["position_bits"] = options.no_draco ? Json(nullptr) : Json(options.position_bits);
+  const bool has_bits = !options.no_draco && !options.grid_step;
+  json["position_bits"] = has_bits ? Json(options.position_bits) : Json(nullptr);
+  json["position_grid"] = nullptr;
+  if (!options.no_draco && options.grid_step)
+    json["position_grid"] = {{"step", *options.grid_step}, {"origin", options.grid_origin}};
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <lodestone/core/result.h>
+#include <lodestone/io/asset.h>
 #include <lodestone/lod/simplify.h>
 
 #include "build_command.h"
@@ -22,6 +23,9 @@ void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene)
 
 /// Returns what the options say of every mesh alike. Errors: InvalidArgument for a weight that is none.
 Result<SimplifyOptions> simplify_options(const BuildCommand& options);
+
+/// Returns how geometry is stored.
+AssetOptions asset_options(const BuildCommand& options);
 
 /// Returns the options as understood, for the report; `weights` are those of simplify_options.
 Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count);

@@ -359,7 +359,9 @@ void BuildRun::make_mesh_level(LevelJob& job) const {
   // Vertices of skinned and morphed meshes take their weights and targets with them, so those stay where they are.
   const bool fits = options_.placement == "optimised" && !source.skinned && !source.has_targets;
   if (!fits || is_whole(job.mesh, job.level)) return;
-  Mesh fitted = optimise_placement(source.mesh, level.mesh);
+  PlacementOptions placement;
+  placement.fixed = simplified_[job.mesh].locked;
+  Mesh fitted = optimise_placement(source.mesh, level.mesh, placement);
   const double bound = static_cast<double>(progressive.deviation[position]);
   const bool is_limited = choices_[job.level].target.kind == TargetKind::Error;
   if (!is_limited || lies_within(source.mesh, fitted, bound)) level.mesh = std::move(fitted);
@@ -450,9 +452,7 @@ Result<void> BuildRun::encode_streams() {
 }
 
 Result<std::vector<EncodedAsset>> BuildRun::encode() {
-  AssetOptions options;
-  options.draco = !options_.no_draco;
-  options.draco_position_bits = options_.position_bits;
+  AssetOptions options = asset_options(options_);
   std::vector<EncodedAsset> assets;
   const std::size_t file_count = has_file_per_level(options_) ? report_.levels.size() : 1;
   for (std::size_t i = 0; i < file_count; ++i) {

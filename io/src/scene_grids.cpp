@@ -5,6 +5,9 @@
 #include <limits>
 #include <numeric>
 
+#include "text.h"
+#include "try.h"
+
 namespace lodestone::detail {
 namespace {
 
@@ -64,6 +67,23 @@ std::vector<QuantizationGrid> fit_columns(std::span<const LevelGeometry> levels,
   return grids;
 }
 
+/// A grid of so many bits that its range is the step times a power of two: Draco divides without an error.
+Result<QuantizationGrid> given_grid(const PositionGrid& given, std::span<const std::vector<LevelGeometry>> levels) {
+  constexpr int kBits = 30;
+  constexpr double kMostSteps = 1 << 29;  // differences of positions stay within 32 bits
+  const float origin[3] = {given.origin.x, given.origin.y, given.origin.z};
+  double farthest = 0;
+  for (const std::vector<LevelGeometry>& mesh : levels)
+    for (const LevelGeometry& level : mesh)
+      for (const Vec3f& p : level.mesh->positions)
+        for (const double d : {p.x - origin[0], p.y - origin[1], p.z - origin[2]})
+          farthest = std::max(farthest, std::abs(d) / static_cast<double>(given.step));
+  if (farthest > kMostSteps)
+    return fail(ErrorCode::InvalidArgument, text("positions lie up to ", farthest, " steps of ", given.step,
+                                                 " from the grid's origin, more than ", kMostSteps));
+  return QuantizationGrid{{origin, origin + 3}, std::ldexp(given.step, kBits), kBits};
+}
+
 /// Returns the meshes' numbers by ascending scale.
 std::vector<std::size_t> by_scale(const std::vector<SceneMesh>& meshes) {
   std::vector<std::size_t> order(meshes.size());
@@ -73,11 +93,9 @@ std::vector<std::size_t> by_scale(const std::vector<SceneMesh>& meshes) {
   return order;
 }
 
-}  // namespace
-
-std::vector<QuantizationGrids> fit_grids(const Scene& scene, std::span<const std::vector<LevelGeometry>> levels,
-                                         const AssetOptions& options) {
-  std::vector<QuantizationGrids> grids(levels.size());
+/// Fits one grid to the levels of all meshes of a scale.
+void fit_positions(const Scene& scene, std::span<const std::vector<LevelGeometry>> levels, const AssetOptions& options,
+                   std::vector<QuantizationGrids>& grids) {
   const std::vector<std::size_t> order = by_scale(scene.meshes());
   for (std::size_t first = 0; first < order.size();) {
     const double scale = scene.meshes()[order[first]].scale;
@@ -87,6 +105,19 @@ std::vector<QuantizationGrids> fit_grids(const Scene& scene, std::span<const std
       for (const LevelGeometry& level : levels[order[end]])
         fitter.add(as_floats(std::as_bytes(std::span(level.mesh->positions))));
     for (; first < end; ++first) grids[order[first]].position = fitter.grid(options.draco_position_bits);
+  }
+}
+
+}  // namespace
+
+Result<std::vector<QuantizationGrids>> fit_grids(const Scene& scene, std::span<const std::vector<LevelGeometry>> levels,
+                                                 const AssetOptions& options) {
+  std::vector<QuantizationGrids> grids(levels.size());
+  if (options.draco_position_grid) {
+    LODESTONE_TRY(const QuantizationGrid grid, given_grid(*options.draco_position_grid, levels));
+    for (QuantizationGrids& of_mesh : grids) of_mesh.position = grid;
+  } else {
+    fit_positions(scene, levels, options, grids);
   }
   for (std::size_t i = 0; i < levels.size(); ++i) grids[i].attributes = fit_columns(levels[i], options);
   return grids;

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include <lodestone/core/result.h>
 #include <lodestone/io/scene.h>
 
 #include "draco_encode.h"
@@ -11,9 +12,10 @@
 namespace lodestone::detail {
 
 /// Fits the grids of each of a scene's meshes, over all its levels: levels of different grids would not fit together.
-/// Meshes of equal scale share their grid of positions, since they may touch. Attribute grids stand by column.
-/// Shapes: `levels[mesh][level]`.
-std::vector<QuantizationGrids> fit_grids(const Scene& scene, std::span<const std::vector<LevelGeometry>> levels,
-                                         const AssetOptions& options);
+/// Meshes of equal scale share their grid of positions, since they may touch; all do where the options give one.
+/// Attribute grids stand by column. Shapes: `levels[mesh][level]`. Errors: InvalidArgument where the options' grid is
+/// too fine for how far positions lie from its origin.
+Result<std::vector<QuantizationGrids>> fit_grids(const Scene& scene, std::span<const std::vector<LevelGeometry>> levels,
+                                                 const AssetOptions& options);
 
 }  // namespace lodestone::detail

@@ -28,6 +28,9 @@ using namespace detail;
 constexpr int kMaxQuantizationBits = 30;  // Draco's limit
 constexpr int kMinNormalBits = 2;
 
+// Of a grid's step: floats hold all that Draco computes from it.
+constexpr float kLeastStep = 1e-30F, kMostStep = 1e28F;
+
 struct BitsOption {
   const char* name;
   int value;
@@ -43,6 +46,9 @@ Result<void> check_options(const AssetOptions& options) {
     if (bits.value < bits.least || bits.value > kMaxQuantizationBits)
       return fail(ErrorCode::InvalidArgument,
                   text(bits.name, " is ", bits.value, ", not in ", bits.least, " to ", kMaxQuantizationBits));
+  if (const auto& grid = options.draco_position_grid; grid && !(grid->step >= kLeastStep && grid->step <= kMostStep))
+    return fail(ErrorCode::InvalidArgument,
+                text("the grid's step is ", grid->step, ", not in ", kLeastStep, " to ", kMostStep));
   if (options.draco_compression_level < 0 || options.draco_compression_level > 10)
     return fail(ErrorCode::InvalidArgument,
                 text("draco_compression_level is ", options.draco_compression_level, ", not in 0 to 10"));
@@ -124,7 +130,7 @@ class SceneWriter {
         geometry_.back().push_back(std::move(matched));
       }
     }
-    grids_ = fit_grids(scene_, geometry_, options_);
+    LODESTONE_TRY(grids_, fit_grids(scene_, geometry_, options_));
     for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh)
       layout_.quantisation_error = std::max(
           layout_.quantisation_error, std::sqrt(3.0) / 2 * grids_[mesh].position.step() * scene_.meshes()[mesh].scale);

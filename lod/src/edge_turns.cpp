@@ -16,18 +16,19 @@ constexpr double kGain = 0.98;  // turned where the samples' sum falls below thi
 class EdgeTurner {
  public:
   EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
-             const OriginalGuard& guard)
+             const OriginalGuard& guard, std::span<const std::uint8_t> fixed)
       : mesh_(mesh),
         edges_(edges),
         norm_(norm),
         guard_(guard),
         samples_(samples),
         samples_of_face_(mesh.face_count(), samples.size(), [&](Index i) { return samples[i].face; }),
-        textures_(mesh) {}
+        textures_(mesh),
+        fixed_(fixed) {}
 
   std::size_t run() {
     std::size_t count = 0;
-    taken_.assign(mesh_.face_count(), 0);
+    for (Index f = 0; f < mesh_.face_count(); ++f) taken_.push_back(is_fixed(f) ? 1 : 0);
     for (const MeshEdge& edge : edges_) count += !edge.constrained && turn(edge) ? 1 : 0;
     return count;
   }
@@ -63,6 +64,11 @@ class EdgeTurner {
     sample.place_on(mesh_, quad.face[0]);
     other.place_on(mesh_, quad.face[1]);
     if (other.squared_distance < sample.squared_distance) sample = other;
+  }
+
+  bool is_fixed(Index face) const {
+    const auto stays = [&](Index corner) { return fixed_[mesh_.corner_vertex(corner)] != 0; };
+    return stays(3 * face) && stays(3 * face + 1) && stays(3 * face + 2);
   }
 
   Index vertex(Index wedge) const { return mesh_.wedge_vertex[wedge]; }
@@ -129,15 +135,16 @@ class EdgeTurner {
   std::span<SurfaceSample> samples_;
   Grouping samples_of_face_;
   TextureAreas textures_;
-  std::vector<std::uint8_t> taken_;
+  std::span<const std::uint8_t> fixed_;  // by vertex
+  std::vector<std::uint8_t> taken_;  // by face
   std::vector<std::pair<Index, Index>> added_;
 };
 
 }  // namespace
 
 std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
-                       const OriginalGuard& guard) {
-  return EdgeTurner(mesh, edges, samples, norm, guard).run();
+                       const OriginalGuard& guard, std::span<const std::uint8_t> fixed) {
+  return EdgeTurner(mesh, edges, samples, norm, guard, fixed).run();
 }
 
 }  // namespace lodestone::detail

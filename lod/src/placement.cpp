@@ -7,9 +7,11 @@
 #include <lodestone/lod/placement.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include <lodestone/lod/deviation.h>
 
@@ -46,6 +48,22 @@ struct Effort {
 constexpr Effort kEffort = {1, 3, 0.985};
 constexpr Effort kEffortForFew = {6, 12, 0.999};
 
+/// Which of a level's vertices lie where fixed ones of the original do.
+std::vector<std::uint8_t> find_fixed(const Mesh& original, const Mesh& level,
+                                     const std::vector<std::uint8_t>& fixed_of_original) {
+  assert(fixed_of_original.empty() || fixed_of_original.size() == original.vertex_count());
+  using Place = std::tuple<float, float, float>;
+  const auto place = [](const Vec3f& p) { return Place(p.x, p.y, p.z); };
+  std::vector<Place> places;
+  for (std::size_t v = 0; v < fixed_of_original.size(); ++v)
+    if (fixed_of_original[v] != 0) places.push_back(place(original.positions[v]));
+  std::sort(places.begin(), places.end());
+  std::vector<std::uint8_t> fixed;
+  for (const Vec3f& p : level.positions)
+    fixed.push_back(std::binary_search(places.begin(), places.end(), place(p)) ? 1 : 0);
+  return fixed;
+}
+
 class Fitting {
  public:
   Fitting(const Mesh& original, Mesh& level, const PlacementOptions& options)
@@ -53,6 +71,7 @@ class Fitting {
         options_(options),
         is_fine_(static_cast<double>(level.face_count()) >= kFineShare * static_cast<double>(original.face_count())),
         guard_(original),
+        fixed_(find_fixed(original, level, options.fixed)),
         edges_(list_edges(level)),
         samples_(original, options.samples_per_face * level.face_count()),
         lines_(original) {
@@ -76,6 +95,7 @@ class Fitting {
   const PlacementOptions& options_;
   bool is_fine_;
   OriginalGuard guard_;
+  std::vector<std::uint8_t> fixed_;  // by vertex
   SampleNorm norm_;
   std::vector<MeshEdge> edges_;
   SurfaceSamples samples_;
@@ -117,7 +137,7 @@ double Fitting::error() const {
 }
 
 void Fitting::turn_edges() {
-  if (detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_) > 0) edges_ = list_edges(level_);
+  if (detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_, fixed_) > 0) edges_ = list_edges(level_);
 }
 
 void Fitting::assemble(SparseSystem& system) const {
@@ -131,7 +151,7 @@ void Fitting::assemble(SparseSystem& system) const {
   add_lines(system);
   const double one = 1;
   for (Index v = 0; v < level_.vertex_count(); ++v) {
-    const bool stays = line_ends_[v] != 0 && line_ends_[v] != 2;
+    const bool stays = fixed_[v] != 0 || (line_ends_[v] != 0 && line_ends_[v] != 2);
     const double weight = (stays ? kCornerStay : kStay) * system.stiffness(v);
     system.add(&v, &one, 1, Vec3(level_.positions[v]), Symmetric3::identity(weight > 0 ? weight : 1));
   }
@@ -178,6 +198,8 @@ void Fitting::move() {
   std::vector<Vec3f> positions;
   for (const Vec3& p : moved)
     positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+  for (Index v = 0; v < positions.size(); ++v)
+    if (fixed_[v] != 0) positions[v] = level_.positions[v];
   do {
     keep_faces_upright(level_, positions);
   } while (!guard_.keep_faces_near(level_, positions));

@@ -170,7 +170,6 @@ Verdict RemovalEvaluator::gather(Index vertex) {
   mesh.gather_star(vertex, star_);
   if (star_.corners.size() > kMaxRing) return Verdict::Ring;
   if (star_.closed && star_.corners.size() < 3) return Verdict::Link;  // two faces back to back: no hole to fill
-  if (!star_.closed && options_->lock_border && !mesh.is_copy(vertex)) return Verdict::Locked;
   center_ = Vec3(state_->mesh.positions[vertex]);
   gather_ring();
   gather_normals();

@@ -14,6 +14,7 @@
 
 #include "creases.h"
 #include "deviation_bounds.h"
+#include "locks.h"
 #include "pieces.h"
 #include "record_builder.h"
 #include "removal_evaluator.h"
@@ -52,12 +53,14 @@ class Simplifier {
         evaluator_(state_, options_),
         builder_(mesh, state_.connectivity),
         bounds_(mesh, options.measure_step),
+        locked_(find_locked(state_.connectivity, options_)),
         pieces_(mesh, state_.connectivity) {}
 
   SimplifyResult run();
 
  private:
   void prepare();
+  bool is_locked(Index vertex) const { return !locked_.empty() && locked_[vertex] != 0; }
   void evaluate(Index vertex);
   bool choose_candidates();
   bool run_round();
@@ -85,6 +88,8 @@ class Simplifier {
   RemovalEvaluator evaluator_;
   RecordBuilder builder_;
   DeviationBounds bounds_;
+
+  std::vector<std::uint8_t> locked_;  // by vertex; empty where none is
 
   Pieces pieces_;
   std::vector<float> piece_cost_;
@@ -125,12 +130,10 @@ void Simplifier::prepare() {
 
 void Simplifier::evaluate(Index vertex) {
   choice_[vertex] = {kNoChoice, kNoChoice};
+  if (is_locked(vertex)) return;  // as `prepare` left it
   Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
   ++evaluation_count_;
-  if (!options_.importance.empty()) {
-    evaluation.cost *= static_cast<double>(options_.importance[vertex]);
-    if (options_.importance[vertex] >= kLockingImportance) evaluation.verdict = Verdict::Locked;
-  }
+  if (!options_.importance.empty()) evaluation.cost *= static_cast<double>(options_.importance[vertex]);
   stale_[vertex] = 0;
   verdict_[vertex] = evaluation.verdict;
   const bool within = evaluation.curvature_error <= options_.stop.max_curvature_error;
@@ -299,19 +302,17 @@ void Simplifier::price_pieces() {
   for (Index piece = 0; piece < pieces_.count(); ++piece) {
     float error = 0;
     float importance = options_.importance.empty() ? 1.0F : 0.0F;
-    bool open = false;
+    bool stays = false;
     for (const Index v : pieces_.vertices(piece)) {
       error = std::max(error, std::abs(state_.original_curvature[v]));
       if (!options_.importance.empty()) importance = std::max(importance, options_.importance[v]);
-      if (!options_.lock_border || !state_.connectivity.has_vertex(v)) continue;
-      state_.connectivity.gather_star(v, star_);
-      open = open || !star_.closed;
+      stays = stays || is_locked(v);
     }
     const double loss = pieces_.loss(state_.mesh, piece);
     const bool is_hybrid = options_.metric == Metric::Hybrid;
     double cost = is_hybrid ? hybrid_cost(loss, static_cast<double>(error)) : static_cast<double>(error);
     cost *= static_cast<double>(importance);
-    const bool stays = open || importance >= kLockingImportance || error > options_.stop.max_curvature_error;
+    stays = stays || error > options_.stop.max_curvature_error;
     piece_cost_.push_back(stays ? kIllegal : static_cast<float>(cost));
     piece_error_.push_back(error);
   }
@@ -437,6 +438,7 @@ SimplifyResult Simplifier::run() {
   result.stop_reason = stop_reason_;
   result.evaluation_count = evaluation_count_;
   result.charge = charges();
+  result.locked = std::move(locked_);
   result.mesh = builder_.finish(bounds_.bounds());
   return result;
 }
@@ -455,7 +457,10 @@ Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options
   mark_creases(sorted, options, *connectivity);
   SimplifyOptions local = options;
   for (std::size_t v = 0; v < local.importance.size(); ++v) local.importance[v] = options.importance[source_vertex[v]];
-  return Simplifier(sorted, std::move(*connectivity), local).run();
+  SimplifyResult result = Simplifier(sorted, std::move(*connectivity), local).run();
+  const std::vector<std::uint8_t> locked = result.locked;
+  for (std::size_t v = 0; v < locked.size(); ++v) result.locked[source_vertex[v]] = locked[v];
+  return result;
 }
 
 }  // namespace lodestone

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,9 +23,16 @@ struct AssetLevel {
   std::string stop_reason;     ///< e.g. "faces", "error", "stuck"
 };
 
+/// A grid that positions are quantised in, whatever the meshes: files made one by one agree where their meshes meet.
+struct PositionGrid {
+  Vec3f origin;   ///< mesh units, as the next
+  float step = 0; ///< > 0; no position lies farther than 2²⁹ steps from the origin
+};
+
 struct AssetOptions {
   bool draco = true;
   int draco_position_bits = 14;  ///< 1 to 30, one grid for all levels, and all meshes of a scale
+  std::optional<PositionGrid> draco_position_grid;  ///< in place of a grid of so many bits, fitted to the meshes
   int draco_normal_bits = 10;
   int draco_texcoord_bits = 12;
   int draco_generic_bits = 10;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include <lodestone/core/mesh.h>
 
@@ -9,6 +11,9 @@ namespace lodestone {
 struct PlacementOptions {
   int iterations = 8;                 ///< of fitting, each moves all vertices; up to six times as many of small levels
   std::size_t samples_per_face = 60;  ///< at most, of the level's faces: where the original has more, some are left out
+  /// One per vertex of the original, or empty: where it is not 0, what lies there stays, bit for bit, and so do the edges
+  /// of faces between such vertices.
+  std::vector<std::uint8_t> fixed;
 };
 
 /// Moves the vertices of a level to where its faces fit the original best, and turns edges where that fits better.

@@ -58,7 +58,7 @@ struct SimplifyOptions {
   /// Hard edges by angle: where two faces' normals differ by more than this, in radians, the edge between them is kept
   /// as a line. Unset: only edges whose attributes or materials differ.
   std::optional<double> crease_angle;
-  bool lock_border = false;       ///< keep every vertex of an open border
+  bool lock_border = false;       ///< keep every vertex of an edge that has one face only
   /// Let the last piece of the mesh go, too, so that the base mesh is empty. Smaller pieces always may.
   bool vanish = false;
   std::vector<float> importance;  ///< one per vertex of the mesh, or empty: multiplies the vertex's cost; 0 or more
@@ -90,6 +90,7 @@ struct SimplifyResult {
   /// never falls towards the base, so that meshes simplified alike can share faces by it. Mesh units, but radians for
   /// Metric::Gaussian.
   std::vector<float> charge;
+  std::vector<std::uint8_t> locked;  ///< by vertex of the mesh given: 1 where the options kept it; empty where nowhere
   std::size_t evaluation_count = 0;
 };
 
