@@ -121,11 +121,21 @@ std::set<std::size_t> moved_nodes(const GltfFile& in, const GltfFile& out) {
   return moved;
 }
 
+/// Takes out of a node what makes it the finest level where it stands.
+void take_out_lod(GltfJson& node) {
+  node["extensions"].erase("MSFT_lod");
+  for (const char* member : {"lodestone", "MSFT_screencoverage"}) node["extras"].erase(member);
+  for (const char* member : {"extensions", "extras"})
+    if (node[member].empty()) node.erase(member);
+}
+
 void check_nodes(const GltfFile& in, const GltfFile& out) {
   const std::size_t count = in.json["nodes"].size();
   for (std::size_t i = 0; i < count; ++i) {
     CAPTURE(i);
     GltfJson before = in.json["nodes"][i], after = out.json["nodes"][i];
+    if (before.contains("skin") && after.contains("extensions") && after["extensions"].contains("MSFT_lod"))
+      take_out_lod(after);
     if (!before.contains("mesh") || after.contains("mesh")) {
       CHECK(before == after);
       continue;
@@ -197,9 +207,16 @@ void check_meshes(const GltfFile& in, const GltfFile& out) {
   }
 }
 
+/// The document's own come first; all others are coarser levels' copies.
+void check_materials(const GltfFile& in, const GltfFile& out) {
+  const std::size_t count = in.json.contains("materials") ? in.json["materials"].size() : 0;
+  for (std::size_t i = 0; i < count; ++i)
+    CHECK(unordered(in.json["materials"][i]) == unordered(out.json["materials"][i]));
+}
+
 void check_kept(const GltfFile& in, const GltfFile& out) {
-  for (const char* member :
-       {"materials", "textures", "samplers", "cameras", "scenes", "scene", "skins", "extras", "extensions"})
+  check_materials(in, out);
+  for (const char* member : {"textures", "samplers", "cameras", "scenes", "scene", "skins", "extras", "extensions"})
     check_equal(in.json, out.json, member);
   if (in.json.contains("skins"))
     for (const GltfJson& skin : in.json["skins"])
@@ -386,8 +403,13 @@ TEST_CASE("levels that repeat the one before share its data, in meshes of their 
     const auto primitives = [&](const char* name) {
       return out.json["meshes"][(*lod_node(out, name))["mesh"].get<int>()]["primitives"];
     };
-    for (const char* name : {"node_LOD1", "node_LOD2"}) CHECK(primitives(name) == primitives("node_LOD0"));
-    CHECK(primitives("node_LOD3") != primitives("node_LOD0"));
+    const auto geometry = [&](const char* name) {
+      GltfJson list = primitives(name);
+      for (GltfJson& primitive : list) primitive.erase("material");
+      return list;
+    };
+    for (const char* name : {"node_LOD1", "node_LOD2"}) CHECK(geometry(name) == geometry("node_LOD0"));
+    CHECK(geometry("node_LOD3") != geometry("node_LOD0"));
   }
 }
 
@@ -414,7 +436,9 @@ TEST_CASE("points stay as they are, at every level") {
   const GltfFile out = encoded(scene, {});
   for (const std::size_t mesh : {0, 1}) {
     REQUIRE(out.json["meshes"][mesh]["primitives"].size() == 2);
-    CHECK(out.json["meshes"][mesh]["primitives"][0] == points);
+    GltfJson kept = out.json["meshes"][mesh]["primitives"][0];
+    if (mesh > 0) kept.erase("material");
+    CHECK(kept == points);
   }
   const std::size_t accessor = points["attributes"]["POSITION"];
   CHECK(out.accessor_bytes(accessor) == GltfFile::from_glb(maker.glb()).accessor_bytes(accessor));
@@ -546,6 +570,83 @@ TEST_CASE("animations of weights move every level's node, others stay") {
   CHECK(pointer(6) == "/nodes/3/weights/1");
 }
 
+/// The pointers of an animation's channels, sorted.
+std::vector<std::string> pointers_of(const GltfFile& file) {
+  std::vector<std::string> pointers;
+  for (const GltfJson& channel : file.json["animations"][0]["channels"])
+    pointers.push_back(channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"]);
+  std::sort(pointers.begin(), pointers.end());
+  return pointers;
+}
+
+TEST_CASE("animation pointers reach all that a mesh, a primitive or a material has become, and come back") {
+  GltfMaker maker = strips(2, 4);
+  add_targets(maker);
+  maker.add("materials", {{"name", "first"}});
+  for (int i = 0; i < 2; ++i) maker.json["meshes"][0]["primitives"][i]["material"] = 0;
+  const std::size_t times = maker.add_floats({0, 1}, "SCALAR", 1), values = maker.add_floats({0, 1}, "SCALAR", 1);
+  const std::vector<std::string> before = {
+      "/materials/0/emissiveFactor", "/meshes/0/extras/a", "/meshes/0/primitives/1/extras/b",
+      "/meshes/0/weights/0",         "/nodes/0/scale",     "/nodes/0/weights"};
+  GltfJson channels = GltfJson::array();
+  for (const std::string& pointer : before)
+    channels.push_back(
+        {{"sampler", 0},
+         {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+  maker.add("animations", {{"samplers", {{{"input", times}, {"output", values}}}}, {"channels", channels}});
+  const Scene scene = read(maker);
+  // The coarse level has lost the first primitive.
+  std::vector<LeveledMesh> levels = halved(scene);
+  Mesh& coarse = levels[0].levels[1].mesh;
+  coarse = scene.meshes()[0].mesh;
+  coarse.corner_wedge.erase(coarse.corner_wedge.begin(), coarse.corner_wedge.begin() + 3 * 8);
+  coarse.face_material.erase(coarse.face_material.begin(), coarse.face_material.begin() + 8);
+  const EncodedAsset asset = checked(encode_scene(scene, levels, plain()));
+  const std::vector<std::string> after = {"/materials/0/emissiveFactor",
+                                          "/materials/1/emissiveFactor",
+                                          "/meshes/0/extras/a",
+                                          "/meshes/0/primitives/1/extras/b",
+                                          "/meshes/0/weights/0",
+                                          "/meshes/1/extras/a",
+                                          "/meshes/1/primitives/0/extras/b",
+                                          "/meshes/1/weights/0",
+                                          "/nodes/0/scale",
+                                          "/nodes/1/weights",
+                                          "/nodes/2/weights"};
+  CHECK(pointers_of(GltfFile::from_glb(asset.glb)) == after);
+  const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+  CHECK(pointers_of(GltfFile::from_glb(checked(encode_scene_level(again, halved(again, 1), 0, plain())).glb)) ==
+        before);
+}
+
+TEST_CASE("each level has materials of its own, variants' too, and the same textures in them") {
+  GltfMaker maker = strips(2, 4);
+  maker.add("materials", {{"name", "first"}, {"normalTexture", {{"index", 0}}}});
+  maker.add("materials", {{"name", "other"}});
+  GltfJson& primitive = maker.json["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 1}, {"variants", {0}}}};
+  const Scene scene = read(maker);
+  const EncodedAsset asset = checked(encode_scene(scene, halved(scene, 3), {}));
+  const GltfFile out = GltfFile::from_glb(asset.glb);
+  std::set<std::size_t> seen;
+  for (const GltfJson& mesh : out.json["meshes"]) {
+    const GltfJson& named = mesh["primitives"][0];
+    const std::size_t first = named["material"];
+    const std::size_t other = named["extensions"]["KHR_materials_variants"]["mappings"][0]["material"];
+    CHECK(out.json["materials"][first] == maker.json["materials"][0]);
+    CHECK(out.json["materials"][other] == maker.json["materials"][1]);
+    CHECK((seen.insert(first).second && seen.insert(other).second));
+    // The default material, too, would be thrown away with a level.
+    if (mesh["primitives"].size() < 2 || !mesh["primitives"][1].contains("material")) continue;
+    const std::size_t plain_one = mesh["primitives"][1]["material"];
+    CHECK((out.json["materials"][plain_one] == GltfJson::object() && seen.insert(plain_one).second));
+  }
+  const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+  const GltfFile back = GltfFile::from_glb(checked(encode_scene_level(again, halved(again, 1), 0, plain())).glb);
+  CHECK(back.json["materials"] == maker.json["materials"]);
+}
+
 TEST_CASE("a skinned mesh has the scale and the box of its pose at rest") {
   GltfMaker maker = strips(1, 4);
   std::vector<std::uint8_t> joints(40);
@@ -581,7 +682,11 @@ TEST_CASE("a skinned mesh has the scale and the box of its pose at rest") {
   const GltfFile out = GltfFile::from_glb(asset.glb);
   check_kept(GltfFile::from_glb(maker.glb()), out);
   CHECK((*lod_node(out, "node_LOD1"))["skin"] == 0);
+  // It was a root, and so it stays one: glTF warns of others.
+  CHECK((out.json["nodes"][0]["mesh"] == 0 && out.json["nodes"][0]["extensions"].contains("MSFT_lod")));
   const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+  const GltfFile back = GltfFile::from_glb(checked(encode_scene_level(again, halved(again, 1), 0, plain())).glb);
+  check_equal(maker.json, back.json, "nodes");
   for (const Attribute& a : again.meshes().at(0).mesh.attributes)
     if (a.name == "JOINTS_0") CHECK(a.type == ComponentType::UInt8);
 }

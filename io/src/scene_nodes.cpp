@@ -1,14 +1,9 @@
 #include "scene_nodes.h"
 
-#include <string>
-
-#include "text.h"
-
 namespace lodestone::detail {
 namespace {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-constexpr const char* kPointer = "KHR_animation_pointer";
 
 Json* member(Json& value, const char* key) {
   if (!value.is_object()) return nullptr;
@@ -16,45 +11,25 @@ Json* member(Json& value, const char* key) {
   return found == value.end() ? nullptr : &*found;
 }
 
-/// Returns the string of KHR_animation_pointer, or null.
-Json* pointer_of(Json& target) {
-  Json* extensions = member(target, "extensions");
-  Json* extension = extensions != nullptr ? member(*extensions, kPointer) : nullptr;
-  Json* pointer = extension != nullptr ? member(*extension, "pointer") : nullptr;
-  return pointer != nullptr && pointer->is_string() ? pointer : nullptr;
+bool is_root(const Json& nodes, std::size_t node) {
+  for (const Json& other : nodes)
+    if (const Json* children = find_member(other, "children"))
+      for (const Json& child : *children)
+        if (child == node) return false;
+  return true;
 }
 
-std::string weights_pointer(std::size_t node) { return text("/nodes/", node, "/weights"); }
-
-bool points_to_weights(const std::string& pointer, std::size_t node) {
-  const std::string whole = weights_pointer(node);
-  return pointer == whole || pointer.starts_with(whole + '/');
-}
-
-/// True if the channel moves the morph target weights of the node.
-bool moves_weights(Json& channel, std::size_t node) {
-  Json* target = member(channel, "target");
-  if (target == nullptr) return false;
-  if (const Json* pointer = pointer_of(*target)) return points_to_weights(pointer->get<std::string>(), node);
-  const auto index = size_member(*target, "node", "");
-  return index && *index == node && string_member(*target, "path") == "weights";
-}
-
-/// Pre: the channel moves the weights of `from`.
-void retarget(Json& channel, std::size_t from, std::size_t to) {
-  Json& target = channel["target"];
-  if (Json* pointer = pointer_of(target))
-    *pointer = weights_pointer(to) + pointer->get<std::string>().substr(weights_pointer(from).size());
-  else
-    target["node"] = to;
-}
-
-template <class Edit>
-void for_each_channel_list(Json& document, const Edit& edit) {
-  Json* animations = member(document, "animations");
-  if (animations == nullptr) return;
-  for (Json& animation : *animations)
-    if (Json* channels = member(animation, "channels"); channels != nullptr && channels->is_array()) edit(*channels);
+/// True if anything below a node can be seen, or sees: joints cannot.
+bool children_show(const Json& nodes, std::size_t node) {
+  const Json* children = find_member(nodes[node], "children");
+  if (children == nullptr) return false;
+  for (const Json& child : *children) {
+    const Json& below = nodes[child.get<std::size_t>()];
+    for (const char* key : {"mesh", "camera", "extensions"})
+      if (find_member(below, key) != nullptr) return true;
+    if (children_show(nodes, child.get<std::size_t>())) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -80,26 +55,14 @@ void copy_instance_members(const Json& finest, Json& node) {
   if (instancing != nullptr) node["extensions"][kInstancing] = *instancing;
 }
 
-void retarget_weights(Json& document, std::size_t node, std::size_t finest, std::span<const std::size_t> lower) {
-  for_each_channel_list(document, [&](Json& channels) {
-    const std::size_t count = channels.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!moves_weights(channels[i], node)) continue;
-      retarget(channels[i], node, finest);
-      for (const std::size_t other : lower) {
-        Json copy = channels[i];
-        retarget(copy, finest, other);
-        channels.push_back(std::move(copy));
-      }
-    }
-  });
-}
-
-void drop_weights_channels(Json& document, std::size_t node) {
-  for_each_channel_list(document, [&](Json& channels) {
-    for (std::size_t i = channels.size(); i-- > 0;)
-      if (moves_weights(channels[i], node)) channels.erase(i);
-  });
+bool stays_in_place(const Json& document, std::size_t node) {
+  const Json& nodes = document["nodes"];
+  for (const char* key : {"extensions", "extras"})
+    if (const Json* value = find_member(nodes[node], key); value != nullptr && !value->is_object()) return false;
+  // Hidden or shown by its extension, a node takes only its children along.
+  const Json* extensions = find_member(nodes[node], "extensions");
+  if (extensions != nullptr && extensions->contains("KHR_node_visibility")) return false;
+  return find_member(nodes[node], "skin") != nullptr && is_root(nodes, node) && !children_show(nodes, node);
 }
 
 }  // namespace lodestone::detail

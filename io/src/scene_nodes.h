@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
-#include <vector>
 
 #include "json.h"
 
@@ -15,10 +13,8 @@ void move_mesh_members(Json& from, Json& to);
 /// Copies to a coarser level's node what the finest has beside its mesh: skin, weights, instancing.
 void copy_instance_members(const Json& finest, Json& node);
 
-/// Lets the animations of morph target weights of `node` move `finest` instead, and adds a channel for each of `lower`.
-void retarget_weights(Json& document, std::size_t node, std::size_t finest, std::span<const std::size_t> lower);
-
-/// Drops the animation channels of morph target weights that move `node`.
-void drop_weights_channels(Json& document, std::size_t node);
+/// True if a node itself can be the finest level: where a skinned mesh is a root it must stay one, and its node's
+/// transform has no effect. Not where something below the node would vanish with the level.
+bool stays_in_place(const Json& document, std::size_t node);
 
 }  // namespace lodestone::detail

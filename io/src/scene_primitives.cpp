@@ -293,10 +293,10 @@ Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, c
   const Json& primitives = source_mesh.at("primitives");
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const auto replacement = geometry.find(static_cast<Index>(i));
-    if (!source.primitives[i].replaced)
-      written.primitives.push_back(primitives[i]);
-    else if (replacement != geometry.end())
-      written.primitives.push_back(replace_geometry(primitives[i], replacement->second));
+    if (source.primitives[i].replaced && replacement == geometry.end()) continue;
+    written.primitives.push_back(source.primitives[i].replaced ? replace_geometry(primitives[i], replacement->second)
+                                                               : primitives[i]);
+    written.sources.push_back(i);
   }
   return written;
 }

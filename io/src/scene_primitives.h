@@ -25,7 +25,8 @@ Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source);
 
 /// The primitives of a level in the document, and what a client will get out of them.
 struct WrittenLevel {
-  Json primitives = Json::array();  ///< kept ones included; empty for a level that shows nothing
+  Json primitives = Json::array();   ///< kept ones included; empty for a level that shows nothing
+  std::vector<std::size_t> sources;  ///< which primitive of the document's mesh each of them was
   std::uint64_t face_count = 0;
   std::uint64_t vertex_count = 0;
   std::uint64_t byte_count = 0;  ///< of its geometry

@@ -10,10 +10,12 @@
 
 #include "glb_builder.h"
 #include "scene_buffers.h"
+#include "scene_channels.h"
 #include "scene_extensions.h"
 #include "scene_grids.h"
 #include "scene_impl.h"
 #include "scene_levels.h"
+#include "scene_materials.h"
 #include "scene_nodes.h"
 #include "scene_primitives.h"
 #include "stream_extension.h"
@@ -87,6 +89,8 @@ class SceneWriter {
         options_(options),
         plan_(plan_buffers(impl_)),
         builder_(impl_.document.json(), plan_.free_slots),
+        materials_(builder_),
+        lower_meshes_(meshes.size()),
         written_(meshes.size(), std::vector<WrittenLevel>(range.count)) {}
 
   Result<EncodedAsset> write() {
@@ -103,6 +107,7 @@ class SceneWriter {
       for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_stream(mesh);
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
       for (const std::size_t node : impl_.sources[mesh].nodes) add_nodes(mesh, node);
+    move_channels();
     LODESTONE_TRY(std::vector<std::byte> glb, builder_.finish());
     layout_.total_bytes = glb.size();
     return EncodedAsset{std::move(glb), std::move(layout_)};
@@ -191,7 +196,10 @@ class SceneWriter {
     Json object = originals_[mesh];
     if (object.contains("name")) object["name"] = text(string_member(object, "name"), "_LOD", level);
     object["primitives"] = written_[mesh][level].primitives;
-    return builder_.add("meshes", std::move(object));
+    materials_.separate(object["primitives"], level);
+    const std::size_t added = builder_.add("meshes", std::move(object));
+    lower_meshes_[mesh].push_back({added, written_[mesh][level].sources});
+    return added;
   }
 
   /// glTF has no empty mesh, but the numbers of the others must stay: one triangle of no size, that nothing shows.
@@ -221,33 +229,71 @@ class SceneWriter {
       return;
     }
     const std::string name = node_name(mesh, node);
-    Json finest = level_node(mesh, 0, name);
-    move_mesh_members(builder_.at("nodes", node), finest);
-    if (!shows(mesh, 0))
-      for (const char* key : {"mesh", "skin", "weights"}) finest.erase(key);
-    const std::size_t first = builder_.document()["nodes"].size();
-    std::vector<std::size_t> animated;
-    Json ids = Json::array();
-    for (std::size_t level = 1; level < range_.count; ++level) {
-      ids.push_back(first + level);
-      if (shows(mesh, level)) animated.push_back(first + level);
+    if (shows(mesh, 0) && stays_in_place(builder_.document(), node)) {
+      Json& finest = builder_.at("nodes", node);
+      set_finest_members(mesh, finest, builder_.document()["nodes"].size());
+      add_lower_nodes(mesh, node, node, name);
+    } else {
+      const std::size_t first = add_finest_node(mesh, node, name);
+      add_lower_nodes(mesh, node, first, name);
     }
-    finest["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
-    finest["extras"]["MSFT_screencoverage"] = coverage_of_levels(stated_levels(mesh));
-    builder_.add("nodes", finest);
-    for (std::size_t level = 1; level < range_.count; ++level) add_lower_node(mesh, level, name, finest);
-    builder_.at("nodes", node)["children"].push_back(first);
-    retarget_weights(builder_.document(), node, first, animated);
     builder_.use_extension("MSFT_lod");
   }
 
-  void add_lower_node(std::size_t mesh, std::size_t level, const std::string& name, const Json& finest) {
-    Json lower = level_node(mesh, level, name);
+  /// Moves what shows the mesh to a child of the node: the node's other members are of no single level.
+  std::size_t add_finest_node(std::size_t mesh, std::size_t node, const std::string& name) {
+    Json finest;
+    finest["name"] = text(name, "_LOD0");
+    move_mesh_members(builder_.at("nodes", node), finest);
+    if (!shows(mesh, 0))
+      for (const char* key : {"mesh", "skin", "weights"}) finest.erase(key);
+    set_finest_members(mesh, finest, builder_.document()["nodes"].size() + 1);
+    const std::size_t first = builder_.add("nodes", std::move(finest));
+    builder_.at("nodes", node)["children"].push_back(first);
+    return first;
+  }
+
+  /// `lower` is the number that the node of level 1 will have, the others follow it.
+  void set_finest_members(std::size_t mesh, Json& finest, std::size_t lower) {
+    Json ids = Json::array();
+    for (std::size_t level = 1; level < range_.count; ++level) ids.push_back(lower + level - 1);
+    finest["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
+    finest["extras"]["lodestone"] = numbers_of(mesh, 0);
+    finest["extras"]["MSFT_screencoverage"] = coverage_of_levels(stated_levels(mesh));
+  }
+
+  /// Adds the coarser levels below `finest`; `node` had the mesh in the document.
+  void add_lower_nodes(std::size_t mesh, std::size_t node, std::size_t finest, const std::string& name) {
+    const Json members = builder_.at("nodes", finest);
+    std::vector<std::size_t> shown{finest};
+    for (std::size_t level = 1; level < range_.count; ++level) {
+      const std::size_t added = add_lower_node(mesh, level, name, members);
+      if (shows(mesh, level)) shown.push_back(added);
+    }
+    channels_.move_weights(node, std::move(shown));
+  }
+
+  std::size_t add_lower_node(std::size_t mesh, std::size_t level, const std::string& name, const Json& finest) {
+    Json lower;
+    lower["name"] = text(name, "_LOD", level);
+    lower["extras"]["lodestone"] = numbers_of(mesh, level);
     if (shows(mesh, level)) {
       lower["mesh"] = add_lower_mesh(mesh, level);
       copy_instance_members(finest, lower);
     }
-    builder_.add("nodes", std::move(lower));
+    return builder_.add("nodes", std::move(lower));
+  }
+
+  /// What animations moved in the document they move wherever it is now.
+  void move_channels() {
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
+      const std::size_t number = impl_.sources[mesh].mesh;
+      std::vector<ChannelMap::Place> places{{number, written_[mesh][0].sources}};
+      places.insert(places.end(), lower_meshes_[mesh].begin(), lower_meshes_[mesh].end());
+      channels_.move_mesh(number, std::move(places));
+    }
+    materials_.describe(channels_);
+    channels_.apply(builder_.document());
   }
 
   std::string node_name(std::size_t mesh, std::size_t node) {
@@ -256,14 +302,11 @@ class SceneWriter {
     return name.empty() ? "mesh" : name;
   }
 
-  Json level_node(std::size_t mesh, std::size_t level, const std::string& name) const {
+  Json numbers_of(std::size_t mesh, std::size_t level) const {
     std::optional<double> position_step;
     if (options_.draco) position_step = grids_[mesh].position.step();
-    Json node;
-    node["name"] = text(name, "_LOD", level);
-    node["extras"]["lodestone"] = level_numbers(stated_levels(mesh)[level], written_[mesh][level],
-                                                scene_.meshes()[mesh], impl_.sources[mesh].nodes.size(), position_step);
-    return node;
+    return level_numbers(stated_levels(mesh)[level], written_[mesh][level], scene_.meshes()[mesh],
+                         impl_.sources[mesh].nodes.size(), position_step);
   }
 
   const Scene& scene_;
@@ -274,7 +317,10 @@ class SceneWriter {
   const AssetOptions& options_;
   BufferPlan plan_;
   GlbBuilder builder_;
-  std::vector<std::vector<LevelGeometry>> geometry_;  // by mesh and level, as the next
+  LevelMaterials materials_;
+  ChannelMap channels_;
+  std::vector<std::vector<ChannelMap::Place>> lower_meshes_;  // by mesh
+  std::vector<std::vector<LevelGeometry>> geometry_;          // by mesh and level, as the next
   std::vector<std::vector<WrittenLevel>> written_;
   std::vector<std::vector<AssetLevel>> measured_;  // as decoded; only with options_.measure
   std::vector<Json> originals_;                    // the meshes as they were in the document
