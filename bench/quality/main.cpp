@@ -180,7 +180,9 @@ int main(int argc, char** argv) {
   options.data = lodestone::bench::default_data();
   CLI::App app("Compares lodestone's levels with those of other simplifiers and prints Markdown.");
   app.add_option("--data", options.data, "folder of models, laid out as shared/data");
-  app.add_option("--models", options.models, "parts of models' names")->delimiter(',');
+  app.add_option("--models", options.models,
+                 "parts of models' names; cad- for those of engineering, which are not among all")
+      ->delimiter(',');
   app.add_option("--ratios", options.percents, "percent of the faces")->delimiter(',');
   app.add_option("--only", options.only, "simplifiers: levels, stream, lt-end, meshopt, openmesh, vtk-pro, lt, gh, vtk")
       ->delimiter(',');

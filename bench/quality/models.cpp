@@ -16,10 +16,13 @@
 #include <lodestone/core/assemble.h>
 #include <lodestone/io/read_mesh.h>
 
+#include "support/cad_shapes.h"
+
 namespace lodestone::bench {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr int kCadDetail = 4;  // about 1,000 faces each
 
 struct FileOfModel {
   const char* name;
@@ -39,6 +42,8 @@ const std::vector<FileOfModel>& files() {
       {"beast", "mesh/beast.obj", {}},
       {"spot", "mesh/spot/spot_triangulated.obj", {}},
       {"helmet", "gltf/FlightHelmet/FlightHelmet.gltf", {}, true},
+      {"cad-part", "field/cad-part.obj", {}},
+      {"cad-field-rod", "field/rod-64-sides.obj", {}},
   };
   return list;
 }
@@ -161,9 +166,10 @@ Vec3 terrain_point(double u, double v) {
   return {u, v, height};
 }
 
+/// Models of engineering are compared by themselves, only where asked for.
 bool is_wanted(const std::string& name, const std::vector<std::string>& wanted) {
-  return wanted.empty() ||
-         std::any_of(wanted.begin(), wanted.end(), [&](const auto& w) { return name.find(w) != std::string::npos; });
+  if (wanted.empty()) return !name.starts_with("cad-");
+  return std::any_of(wanted.begin(), wanted.end(), [&](const auto& w) { return name.find(w) != std::string::npos; });
 }
 
 void load_file(const FileOfModel& file, const std::string& data, const std::vector<std::string>& wanted,
@@ -197,6 +203,10 @@ Models load_models(const std::string& data, const std::vector<std::string>& want
   generated("torus", [] { return parametric(160, 64, true, torus_point); });
   generated("saddle", [] { return parametric(100, 100, false, saddle_point); });
   generated("terrain", [] { return parametric(120, 120, false, terrain_point); });
+  for (const test::CadShape& shape : test::cad_shapes(kCadDetail)) {
+    const std::string name = "cad-" + shape.name;
+    if (is_wanted(name, wanted)) models.found.push_back(model_of(name, shape.soup, {}));
+  }
   return models;
 }
 

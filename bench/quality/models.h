@@ -21,8 +21,8 @@ struct Models {
   std::vector<std::string> missing;  ///< names of files that are not there or not readable
 };
 
-/// Loads the models whose names contain one of `wanted`, all of them where it is empty: files from `data` (the layout
-/// of shared/data), then generated surfaces whose vertices lie on a known one.
+/// Loads the models whose names contain one of `wanted`; where it is empty, all but those of engineering, "cad-…".
+/// Files come from `data` (the layout of shared/data), then generated surfaces whose vertices lie on a known one.
 Models load_models(const std::string& data, const std::vector<std::string>& wanted);
 
 }  // namespace lodestone::bench
