@@ -56,13 +56,24 @@ TEST_CASE("every readable model reaches every ratio, or says what keeps it from 
     const std::size_t fewest = face_counts(result->mesh).front();
     const BlockedCounts& blocked = result->blocked;
     CHECK(fewest > 0);
-    CHECK(blocked.locked + blocked.flip + blocked.link + blocked.ring == result->mesh.base_vertex_count);
+    CHECK(blocked.locked + blocked.flip + blocked.link + blocked.shape + blocked.texture + blocked.ring ==
+          result->mesh.base_vertex_count);
     for (const double ratio : {0.5, 0.1}) {
       const auto faces = static_cast<std::size_t>(ratio * static_cast<double>(file->mesh.face_count()));
       // What is left is one piece that no legal removal makes smaller: few faces, or most edges already joined.
       if (fewest > faces) CHECK((fewest <= 20 || blocked.link > result->mesh.base_vertex_count / 2));
     }
   }
+}
+
+TEST_CASE("a rod that is all slivers reaches every ratio") {
+  const auto path = model("field/rod-64-sides.obj");
+  LODESTONE_SKIP_UNLESS(path, "no models: set LODESTONE_DATA to their folder");
+  const auto file = read_mesh(*path);
+  REQUIRE(file);
+  const auto result = simplify(file->mesh);
+  REQUIRE(result);
+  CHECK(face_counts(result->mesh).front() <= 8);
 }
 
 TEST_CASE("the model that comes with the repository comes back from its stream bit for bit") {

@@ -8,6 +8,7 @@
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/deviation.h>
 
+#include "support/cad_shapes.h"
 #include "support/data.h"
 #include "support/mesh_properties.h"
 #include "support/random.h"
@@ -316,6 +317,45 @@ TEST_CASE("small pieces vanish before a large one loses its shape") {
   for (Index c = 0; c < level.corner_wedge.size(); ++c)
     farthest = std::max(farthest, level.positions[level.corner_vertex(c)].x);
   CHECK(farthest <= 1);
+}
+
+TEST_CASE("slivers go like other faces, and no level has worse ones than the mesh") {
+  const auto worst_shape = [](const Mesh& mesh) {
+    double worst = 1;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+      double longest = 0;
+      for (Index c = 3 * f; c < 3 * f + 3; ++c)
+        longest = std::max(longest, squared_length(mesh.corner_position(next_corner(c)) - mesh.corner_position(c)));
+      worst = std::min(worst, length(area_vector(mesh, f)) / longest);
+    }
+    return worst;
+  };
+  for (const TriangleSoup& soup :
+       {rod(64), rod(200), disc(64), disc(400), askew(rod(96)), fan(60, 1e-4), double_cone(200), cut_box(40),
+        askew(cut_box(40)), crowded_box(8), seam_sphere(200, 3), faceted_cylinder(300, 1)}) {
+    const Mesh mesh = mesh_of(soup);
+    INFO(mesh.face_count() << " faces, the worst of shape " << worst_shape(mesh));
+    const SimplifyResult result = simplified(mesh);
+    CHECK(face_counts(result.mesh).front() <= mesh.face_count() / 8);
+    CHECK(result.blocked.shape == 0);
+    Cursor cursor(result.mesh);
+    for (const double share : {0.8, 0.5, 0.2}) {
+      cursor.seek(position_for_faces(result.mesh, static_cast<std::size_t>(share * double(mesh.face_count()))));
+      CHECK(worst_shape(extract_level(result.mesh, cursor)) >= 0.99 * std::min(1e-3, worst_shape(mesh)));
+    }
+  }
+}
+
+TEST_CASE("a vertex that would leave a sliver where none was stays, and is counted as such") {
+  TriangleSoup soup;
+  soup.positions = {{0, 0, 0}, {1, -1e-4F, 0}, {2, 0, 0}, {1, 1, 0}};
+  soup.indices = {0, 1, 3, 1, 2, 3};
+  const Mesh mesh = mesh_of(soup);
+  SimplifyOptions options;
+  for (const Vec3f& p : mesh.positions) options.importance.push_back(p.y < 0.5F ? kLockingImportance : 1.0F);
+  const BlockedCounts blocked = simplified(mesh, options).blocked;
+  CHECK(blocked.shape == 1);
+  CHECK(blocked.locked == 3);
 }
 
 TEST_CASE("importance keeps what matters, and from 1000 on all of it") {

@@ -101,7 +101,8 @@ TEST_CASE("the report has its schema's members") {
     CHECK(report["stream"][number].get<std::size_t>() > 0);
   }
   CHECK(report["stream"]["stopped_by"].is_string());
-  for (const char* number : {"locked", "flip", "link", "ring"}) CHECK(report["stream"]["blocked"][number].is_number());
+  for (const char* number : {"locked", "flip", "link", "shape", "texture", "ring", "error"})
+    CHECK(report["stream"]["blocked"][number].is_number());
   for (const char* stage : {"read", "simplify", "levels", "write"}) {
     CHECK(report["timings_ms"][stage].get<double>() >= 0);
   }

@@ -49,6 +49,8 @@ Json stream_json(const BuildReport::Stream& stream) {
            {{"locked", stream.blocked.locked},
             {"flip", stream.blocked.flip},
             {"link", stream.blocked.link},
+            {"shape", stream.blocked.shape},
+            {"texture", stream.blocked.texture},
             {"ring", stream.blocked.ring},
             {"error", stream.blocked.error}}}};
 }

@@ -72,6 +72,8 @@ std::string blocked_text(const BlockedCounts& blocked) {
   if (blocked.locked > 0) append_item(text, std::to_string(blocked.locked) + " are locked");
   if (blocked.flip > 0) append_item(text, std::to_string(blocked.flip) + " would turn a face over");
   if (blocked.link > 0) append_item(text, std::to_string(blocked.link) + " would double an edge");
+  if (blocked.shape > 0) append_item(text, std::to_string(blocked.shape) + " would leave a sliver");
+  if (blocked.texture > 0) append_item(text, std::to_string(blocked.texture) + " would turn a texture over");
   if (blocked.error > 0) append_item(text, std::to_string(blocked.error) + " beyond the error allowed");
   if (blocked.ring > 0) append_item(text, std::to_string(blocked.ring) + " have too many neighbours");
   return "vertices left: " + (text.empty() ? "none" : text);

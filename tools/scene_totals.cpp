@@ -42,7 +42,8 @@ AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b) {
 }
 
 BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b) {
-  return {a.locked + b.locked, a.flip + b.flip, a.link + b.link, a.ring + b.ring, a.error + b.error};
+  return {a.locked + b.locked, a.flip + b.flip,       a.link + b.link,  a.shape + b.shape,
+          a.ring + b.ring,     a.texture + b.texture, a.error + b.error};
 }
 
 }  // namespace lodestone::tool

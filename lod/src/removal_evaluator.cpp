@@ -19,7 +19,9 @@ namespace lodestone::detail {
 namespace {
 
 constexpr double kMinCosine = 0.2;       // of the angle that faces may turn, at first
-constexpr double kMinShape = 1e-3;       // a new face's height over its longest edge
+constexpr double kMinShape = 1e-3;       // a new face's height over its longest edge, where there are no slivers yet
+constexpr double kLeastHeight = 4;       // of a face whose normal says something, over the rounding of coordinates
+constexpr double kSameShape = 1e-6;      // relative; shapes that differ by less are the same
 constexpr std::size_t kFullyRanked = 3;  // triangulations, by swept volume, whose distances are measured
 constexpr double kForgiven = 0.7;        // share of the distances there were before that a removal is not charged for
 constexpr double kLeastCharged = 0.02;   // share of the distances after it that it is charged for in any case
@@ -30,6 +32,17 @@ constexpr double kMaterialWeight = 4;    // of a border between materials that m
 constexpr double kSeamWeight = 0.1;      // of a seam that moves: what counts there is the price of the attributes
 constexpr double kTieBreak = 0.2;        // weight of the volume swept, as a length, against a pure curvature error
 constexpr double kMinCurvatureChange = 0.2;  // radians; below it curvature does not separate removals
+
+double squared_longest_edge(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
+}
+
+/// How far rounding to floats may have moved the points of a mesh, each way.
+double rounding_of(const Mesh& mesh) {
+  float largest = 0;
+  for (const Vec3f& p : mesh.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return 0.5 * static_cast<double>(largest) * static_cast<double>(std::numeric_limits<float>::epsilon());
+}
 
 double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
   return 0.25 * length(b - a) * angle_between(normal_a, normal_b);
@@ -66,6 +79,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   const double diagonal = bounding_box(state.mesh).diagonal();
   tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
   const Mesh& mesh = state.mesh;
+  rounding_ = rounding_of(mesh);
   if (mesh.wedge_count() == mesh.vertex_count()) return;
   wedges_ = Grouping(mesh.vertex_count(), mesh.wedge_count(), [&](Index wedge) { return mesh.wedge_vertex[wedge]; });
 }
@@ -100,7 +114,7 @@ Evaluation RemovalEvaluator::evaluate_corner(RemovalRecord& record, Choice& choi
     const Evaluation again = evaluate_collapse(choice[0], record);
     if (!rejects(again.verdict)) return again;
   }
-  Evaluation best{Verdict::Flip};
+  Evaluation best{Verdict::Link};
   for (const bool constrained : {true, false}) {
     for (std::size_t spoke = 0; spoke < ring_size(); ++spoke) {
       if (!is_target(spoke) || is_constrained_spoke(spoke) != constrained) continue;
@@ -119,7 +133,7 @@ Evaluation RemovalEvaluator::evaluate_copies(Index vertex, Removal& removal, Cho
   std::vector<std::pair<std::size_t, Index>> targets;
   for (std::size_t spoke = 0; spoke < ring_size(); ++spoke)
     if (is_target(spoke)) targets.emplace_back(spoke, state_->connectivity.site(ring_vertex_[spoke]));
-  Evaluation best{Verdict::Flip};
+  Evaluation best{Verdict::Link};
   for (const auto& [spoke, site] : targets) {
     if (choice[0] != kNoChoice && choice[0] != spoke) continue;
     if (!take_better(best, evaluate_copies_at(vertex, site, trial_copies_))) continue;
@@ -191,6 +205,7 @@ void RemovalEvaluator::gather_normals() {
   const Connectivity& mesh = state_->connectivity;
   fine_corner_ = star_.corners;
   fine_normal_.resize(fine_corner_.size());
+  has_direction_.resize(fine_corner_.size());
   outer_normal_.resize(fine_corner_.size());
   has_outer_.assign(fine_corner_.size(), 0);
   bends_.assign(fine_corner_.size(), 0);
@@ -199,6 +214,7 @@ void RemovalEvaluator::gather_normals() {
     const Vec3& a = ring_position_[i];
     const Vec3& b = ring_position_[(i + 1) % ring_size()];
     fine_normal_[i] = cross(a - center_, b - center_);
+    has_direction_[i] = has_direction(squared_length(fine_normal_[i]), squared_longest_edge(center_, a, b)) ? 1 : 0;
     const Index outer = mesh.opposite(fine_corner_[i]);
     has_outer_[i] = outer != kNoIndex ? 1 : 0;
     bends_[i] = outer != kNoIndex && !mesh.is_crease(fine_corner_[i]) ? 1 : 0;
@@ -309,6 +325,7 @@ void RemovalEvaluator::take_sectors(RemovalRecord& record, std::size_t target) {
     sector.patch = &patch;
     sector.ring_begin = ring_begin;
     sector.target = target;
+    gather_shapes(sector);
     for (std::size_t i = 0; i < patch.face_count(); ++i) sector.normal += fine_normal_[ring_begin + i];
     if (!attributes_.empty()) sector.scale = attribute_scale(patch, ring_begin);
     ring_begin += patch.face_count();
@@ -322,6 +339,24 @@ void RemovalEvaluator::take_lines(std::size_t target) {
   for (std::size_t spoke = 0; spoke < ring_size(); ++spoke)
     if (spoke != target && is_constrained_spoke(spoke))
       lines_.push_back({target, spoke, line_weight(spoke), lines_.empty() && is_constrained_spoke(target)});
+}
+
+/// What was a sliver may stay one, as long as it gets no worse: where the worst of a sector's faces is one, that is the
+/// limit.
+void RemovalEvaluator::gather_shapes(Sector& sector) const {
+  sector.least_shape = kMinShape;
+  for (std::size_t i = sector.ring_begin; i < sector.ring_begin + sector.patch->face_count(); ++i) {
+    const double longest = squared_longest_edge(center_, ring_position_[i], ring_position_[(i + 1) % ring_size()]);
+    if (!(squared_length(fine_normal_[i]) > kMinShape * kMinShape * longest * longest))
+      sector.least_shape = std::min(sector.least_shape, (1 - kSameShape) * length(fine_normal_[i]) / longest);
+    sector.has_directions = sector.has_directions && has_direction_[i] != 0;
+  }
+}
+
+/// Whether a face with such a normal and longest edge is so high that rounding its corners leaves the normal what it
+/// is.
+bool RemovalEvaluator::has_direction(double squared_normal, double squared_longest) const {
+  return squared_normal > kLeastHeight * kLeastHeight * rounding_ * rounding_ * squared_longest;
 }
 
 AttributeScale RemovalEvaluator::attribute_scale(const SectorPatch& patch, std::size_t ring_begin) const {
@@ -434,11 +469,10 @@ RemovalEvaluator::Triangle& RemovalEvaluator::triangle(const Sector& sector, Pol
 }
 
 Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const Triangle& entry) const {
-  const double square_area = squared_length(entry.normal);
-  const double longest = std::max({squared_length(position(sector, t.b) - position(sector, t.a)),
-                                   squared_length(position(sector, t.c) - position(sector, t.b)),
-                                   squared_length(position(sector, t.a) - position(sector, t.c))});
-  if (!(square_area > kMinShape * kMinShape * longest * longest)) return Verdict::Flip;
+  const double square = squared_length(entry.normal);
+  const double longest = squared_longest_edge(position(sector, t.a), position(sector, t.b), position(sector, t.c));
+  if (!(square > sector.least_shape * sector.least_shape * longest * longest)) return Verdict::Shape;
+  if (sector.has_directions && !has_direction(square, longest)) return Verdict::Shape;
   bool at_rim = false;
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
     if (!is_rim(sector, from, to)) {
@@ -446,11 +480,12 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
       if (!is_closing && linked(ring_number(sector, from), ring_number(sector, to))) return Verdict::Link;
       continue;
     }
+    if (has_direction_[sector.ring_begin + from] == 0) continue;
     at_rim = true;
     if (turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
   }
   if (turn_limit_ != TurnLimit::None && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
-  return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Flip : Verdict::Legal;
+  return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Texture : Verdict::Legal;
 }
 
 /// Whether a face turns by more than the angle allowed, from one normal to another, both of any length.
@@ -473,7 +508,7 @@ bool RemovalEvaluator::turns_texture(const Sector& sector, PolygonTriangle t) co
 
 /// Judges a whole triangulation; an empty one is none.
 Verdict RemovalEvaluator::judge(const Sector& sector, Triangles triangles) {
-  if (triangles.empty()) return Verdict::Flip;
+  if (triangles.empty()) return Verdict::Shape;
   for (const PolygonTriangle t : triangles)
     if (const Verdict verdict = triangle(sector, t).verdict; rejects(verdict)) return verdict;
   return Verdict::Legal;
@@ -510,14 +545,14 @@ Verdict RemovalEvaluator::list_admissible(const Sector& sector) {
   const auto size = static_cast<int>(sector.size());
   const int count = size <= kMaxTabulatedPolygon ? triangulation_count(size) : size + 1;
   ranked_.clear();
-  Verdict verdict = Verdict::Flip;
+  Verdict verdict = Verdict::Ring;
   for (int which = 0; which < count; ++which) {
     const Triangles triangles = candidate(sector, which);
     const Verdict found = judge(sector, triangles);
-    if (found == Verdict::Turn || (found == Verdict::Link && verdict != Verdict::Turn)) verdict = found;
+    verdict = std::min(verdict, found);
     if (found == Verdict::Legal) ranked_.emplace_back(squared_volume_sum(sector, triangles), which);
   }
-  return ranked_.empty() ? verdict : Verdict::Legal;
+  return verdict;
 }
 
 /// Picks the best triangulation of a sector, trying `choice` alone where it names one that is still admissible.

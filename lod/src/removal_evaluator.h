@@ -31,9 +31,10 @@ inline constexpr int kMaxSearchedPolygon = 16;
 inline constexpr double kDistanceExponent = 0.95;
 double hybrid_cost(double moved, double turned);
 
-/// What the evaluation of a removal found. `Turn`: a face would turn too far, which may be let pass;
-/// `Flip`: it would degenerate, or turn a texture over.
-enum class Verdict : std::uint8_t { Legal, Locked, Turn, Flip, Link, Ring };
+/// What the evaluation of a removal found, what says more first. `Turn`: a face would turn too far, which may be let
+/// pass; `Link`: an edge would be doubled; `Shape`: a face would be a worse sliver than those that go; `Texture`: it
+/// would turn a texture over; `Ring`: too many neighbours.
+enum class Verdict : std::uint8_t { Legal, Locked, Turn, Link, Shape, Texture, Ring };
 
 /// Which triangulation each sector of a star was given, or which spoke a corner was moved along, for evaluating it
 /// again.
@@ -87,6 +88,8 @@ class RemovalEvaluator {
     std::size_t ring_begin = 0;  // the ring number of polygon corner 0, and of the first face
     std::size_t target = 0;      // the ring number of a moved sector's last corner
     Vec3 normal;                 // sum of its faces' normals
+    double least_shape = 0;      // that a new face must exceed
+    bool has_directions = true;  // whether the normals of all its faces are more than rounding
     Vec3 entry_normal;           // of the triangle chosen at the edge shared with the sector before
     Vec3 exit_normal;            // and with the sector after; the same for an open sector
     AttributeScale scale;
@@ -139,6 +142,8 @@ class RemovalEvaluator {
   Triangle& triangle(const Sector& sector, PolygonTriangle t);
   Verdict judge(const Sector& sector, PolygonTriangle t, const Triangle& triangle) const;
   Verdict judge(const Sector& sector, Triangles triangles);
+  void gather_shapes(Sector& sector) const;
+  bool has_direction(double squared_normal, double squared_longest) const;
   double squared_volume_sum(const Sector& sector, Triangles triangles);
   void measure_distances(const Sector& sector, PolygonTriangle t, Triangle& triangle);
   double added_squared_distance(const Sector& sector, Triangles triangles);
@@ -182,6 +187,7 @@ class RemovalEvaluator {
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;
+  double rounding_ = 0;  // how far from their true places coordinates may be
 
   Star star_;
   Vec3 center_;
@@ -189,9 +195,10 @@ class RemovalEvaluator {
   std::vector<Line> lines_;
   std::vector<Index> ring_vertex_;
   std::vector<Vec3> ring_position_;
-  std::vector<Index> fine_corner_;  // the star's corners at the vertex, in ring order
-  std::vector<Vec3> fine_normal_;   // of the star's faces
-  std::vector<Vec3> outer_normal_;  // of the faces beyond the rim; unset at a border
+  std::vector<Index> fine_corner_;           // the star's corners at the vertex, in ring order
+  std::vector<Vec3> fine_normal_;            // of the star's faces
+  std::vector<std::uint8_t> has_direction_;  // whether that of a fine face is more than rounding
+  std::vector<Vec3> outer_normal_;           // of the faces beyond the rim; unset at a border
   std::vector<std::uint8_t> has_outer_;
   std::vector<std::uint8_t> bends_;  // whether the angle at the rim is curvature: there is a face beyond, and no crease
   std::vector<VertexCurvature> outside_;  // the ring's curvature without the star

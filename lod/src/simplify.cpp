@@ -401,8 +401,13 @@ BlockedCounts Simplifier::count_blocked() const {
         ++blocked.locked;
         break;
       case Verdict::Turn:
-      case Verdict::Flip:
         ++blocked.flip;
+        break;
+      case Verdict::Shape:
+        ++blocked.shape;
+        break;
+      case Verdict::Texture:
+        ++blocked.texture;
         break;
       case Verdict::Link:
         ++blocked.link;

@@ -76,9 +76,11 @@ enum class StopReason { Faces, CurvatureError, Deviation, Stuck, Cancelled };
 /// What kept the remaining vertices, where the run ended for want of legal removals.
 struct BlockedCounts {
   std::size_t locked = 0;    ///< by the options: border or importance
-  std::size_t flip = 0;      ///< every retriangulation turns a triangle over or makes it degenerate
+  std::size_t flip = 0;      ///< every retriangulation turns a triangle over, or too far
   std::size_t link = 0;      ///< every retriangulation repeats an edge of the mesh
+  std::size_t shape = 0;     ///< every retriangulation leaves a sliver worse than those that were there
   std::size_t ring = 0;      ///< more neighbours than a record holds
+  std::size_t texture = 0;   ///< every retriangulation turns a texture over
   std::size_t error = 0;     ///< free to go, but beyond a limit on the error
 };
 
