@@ -33,6 +33,8 @@ function checksOfScene(checks, viewers, pages, asset) {
     'three.js': () => viewers.drawsInThree(pages, asset),
     'Babylon.js': () => viewers.loadsInBabylon(pages, asset),
     'Babylon.js by byte ranges': () => viewers.streamsInBabylon(pages, asset),
+    'Babylon.js into an asset container': () => viewers.loadsFromContainer(pages, asset),
+    'Babylon.js viewer': () => viewers.showsInBabylonViewer(pages, asset),
   };
 }
 

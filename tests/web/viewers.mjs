@@ -9,6 +9,7 @@ export async function openViewers(site) {
   return {
     three: await openPage(site.browser, `${site.address}/pages/three.html?viewer.js`),
     babylon: await openPage(site.browser, `${site.address}/pages/babylon.html`),
+    babylonViewer: await openPage(site.browser, `${site.address}/pages/babylon-viewer.html`),
   };
 }
 
@@ -41,4 +42,35 @@ export async function streamsInBabylon(viewers, asset) {
   const { shown } = await viewers.babylon.ask((url) => window.loadProgressively(url, true), asset.url);
   sameTriangles(shown, trianglesOfScene(gltf).reverse());
   return shown.join(' ');
+}
+
+const largestDifference = 2; // of 255, in the mean: two drawings of the same
+
+function meanDifference(a, b) {
+  return a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+}
+
+/** Out of an asset container, Babylon.js shows the same picture as without: no level takes the others' textures along. */
+export async function loadsFromContainer(viewers, asset) {
+  const draw = (way) => viewers.babylon.ask((choice) => window.drawLoaded(...choice), [asset.url, way]);
+  const plain = await draw('append');
+  const contained = await draw('container');
+  sameTriangles([contained.triangles], [plain.triangles]);
+  assert.equal(contained.bare, 0, `${contained.bare} meshes have no material`);
+  assert.deepEqual(contained.textures, plain.textures);
+  const difference = meanDifference(plain.pixels, contained.pixels);
+  assert.ok(difference <= largestDifference, `the pictures differ by ${difference.toFixed(1)}`);
+  return `${contained.textures.length} textures, difference ${difference.toFixed(2)}`;
+}
+
+/** The official viewer shows the finest level with all textures that the file's materials have. */
+export async function showsInBabylonViewer(viewers, asset) {
+  if (asset.draco) return 'left out: its decoder comes from the network';
+  const gltf = await readGltf(asset);
+  const [finest] = trianglesOfScene(gltf);
+  const shown = await viewers.babylonViewer.ask((choice) => window.showInViewer(...choice), [asset.url, finest]);
+  sameTriangles([shown.triangles], [finest]);
+  const { textures } = await viewers.babylon.ask((choice) => window.drawLoaded(...choice), [asset.url, 'append']);
+  assert.deepEqual(shown.textures, textures);
+  return `${textures.length} textures`;
 }

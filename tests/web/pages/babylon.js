@@ -62,4 +62,39 @@ window.loadEachLevel = async (url, levels) => {
   return counts;
 };
 
+/** The ways in which programs take a file into a scene. */
+const ways = {
+  append: (url, scene) => BABYLON.SceneLoader.AppendAsync('', url, scene),
+  container: async (url, scene) => (await BABYLON.SceneLoader.LoadAssetContainerAsync('', url, scene)).addAllToScene(),
+};
+
+function shownMeshes(scene) {
+  return scene.meshes.filter((mesh) => mesh.isEnabled() && mesh.getTotalIndices() > 0);
+}
+
+/** Loads a file and draws it; returns its triangles, its materials' textures by whether they are there, and a picture. */
+window.drawLoaded = async (url, way) => {
+  const scene = new BABYLON.Scene(engine);
+  let complete;
+  BABYLON.SceneLoader.OnPluginActivatedObservable.addOnce((loader) => {
+    complete = new Promise((resolve) => loader.onCompleteObservable.addOnce(resolve));
+  });
+  try {
+    await ways[way](url, scene);
+    await complete;
+    scene.createDefaultCameraOrLight(true);
+    await scene.whenReadyAsync();
+    scene.render();
+    const textures = shownMeshes(scene).flatMap(({ material }) => material?.getActiveTextures() ?? []);
+    return {
+      triangles: countTriangles(scene),
+      bare: shownMeshes(scene).filter(({ material }) => !material).length,
+      textures: textures.map((texture) => texture.isReady()),
+      pixels: Array.from(await engine.readPixels(0, 0, engine.getRenderWidth(), engine.getRenderHeight())),
+    };
+  } finally {
+    scene.dispose();
+  }
+};
+
 window.ready = true;
