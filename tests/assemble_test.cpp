@@ -110,6 +110,30 @@ TEST_CASE("assemble cuts where sheets meet, without losing a triangle or moving 
   }
 }
 
+TEST_CASE("sheets that lie on one another stay sheets, whatever order their faces have") {
+  for (const NamedShape& sister : manifold_shapes()) {
+    if (!sister.soup.face_material.empty()) continue;
+    const Mesh once = mesh_of(sister.soup);
+    const auto count_borders = [](const Mesh& mesh) {
+      const auto connectivity = Connectivity::build(mesh);
+      REQUIRE(connectivity);
+      REQUIRE(validate(*connectivity));
+      std::size_t count = 0;
+      for (Index c = 0; c < mesh.corner_wedge.size(); ++c) count += connectivity->opposite(c) == kNoIndex ? 1 : 0;
+      return count;
+    };
+    for (const TriangleSoup& soup : {stacked(sister.soup, 2), layered(sister.soup, 3), two_sided(sister.soup)})
+      for (const TriangleSoup& sheets : {soup, shuffled(soup, 1)}) {
+        INFO(sister.name);
+        const Mesh mesh = mesh_of(sheets);
+        const std::size_t count = sheets.indices.size() / std::max<std::size_t>(1, sister.soup.indices.size());
+        CHECK(mesh.face_count() == count * once.face_count());
+        CHECK(mesh.vertex_count() == count * once.vertex_count());
+        CHECK(count_borders(mesh) == count * count_borders(once));
+      }
+  }
+}
+
 TEST_CASE("assemble names the index or length at fault") {
   TriangleSoup soup = two_triangles();
   soup.indices[4] = 6;

@@ -302,3 +302,28 @@ TEST_CASE("faces in one place with other joints, weights or targets all stay, in
     CHECK_THAT(extracted.out, contains(std::to_string(faces) + " faces"));
   }
 }
+
+TEST_CASE("sheets that lie on one another reach every level, as good as one sheet") {
+  LODESTONE_SKIP_WITHOUT_MODELS();
+  const ScratchDirectory folder;
+  struct Expected {
+    const char* name;
+    std::size_t faces;   // of the coarsest level, at most
+    double largest;      // deviation of its vertices, of the diagonal
+  };
+  for (const auto& [name, faces, largest] : {Expected{"doubled-faces", 4, 1e-6}, {"overlay-materials", 100, 0.012},
+                                             {"sphere-and-doubled-leaf", 111, 0.02}, {"coincident-skinned", 56, 0.15},
+                                             {"coincident-morphed", 28, 0.25}}) {
+    INFO(name);
+    const std::string in = model(std::string("field/") + name + ".glb")->string();
+    const std::string report = (folder / "r.json").string();
+    const std::string out = (folder / "out.glb").string();
+    REQUIRE(run_program({"build", in, "-o", out, "--report", report, "--no-draco"}).exit_code == 0);
+    const Json parsed = Json::parse(file_text(report));
+    CHECK(parsed["levels"].size() == 5);
+    CHECK(parsed["levels"].back()["faces"] <= faces);
+    CHECK(parsed["levels"].back()["target_met"] == true);
+    const double diagonal = parsed["input"]["bounding_box"]["diagonal"];
+    CHECK(parsed["levels"].back()["deviation"]["max"].get<double>() <= largest * diagonal);
+  }
+}

@@ -5,15 +5,16 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <span>
 #include <string>
 
+#include "fans.h"
 #include "hash_index.h"
 
 namespace lodestone {
 namespace {
 
+using detail::cut_into_fans;
 using detail::HashIndex;
 using detail::mix_bits;
 
@@ -186,105 +187,6 @@ Mesh number_by_first_use(const TriangleSoup& soup, const CleanFaces& faces, cons
   mesh.face_material = faces.material;
   for (const Attribute& attribute : soup.attributes) mesh.attributes.push_back(pick_elements(attribute, source));
   return mesh;
-}
-
-/// Groups the corners of each vertex into fans: connected across the edges that two faces share with opposite winding.
-class FanFinder {
- public:
-  explicit FanFinder(const Mesh& mesh) : parent_(mesh.corner_wedge.size()) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-    join_across_edges(mesh);
-  }
-  std::size_t nonmanifold_edges() const { return nonmanifold_edges_; }
-  Index fan_of(Index corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
-
- private:
-  struct HalfEdge {
-    std::uint64_t key;  // the smaller vertex in the high half
-    Index corner;       // the edge leaves this corner
-    bool forward;       // from the smaller to the larger vertex
-  };
-
-  void join_across_edges(const Mesh& mesh) {
-    std::vector<HalfEdge> edges(mesh.corner_wedge.size());
-    for (Index c = 0; c < edges.size(); ++c) {
-      const std::uint64_t a = mesh.corner_vertex(c);
-      const std::uint64_t b = mesh.corner_vertex(next_corner(c));
-      edges[c] = {a < b ? a << 32 | b : b << 32 | a, c, a < b};
-    }
-    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-      return a.key != b.key ? a.key < b.key : a.corner < b.corner;
-    });
-    for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
-      while (j < edges.size() && edges[j].key == edges[i].key) ++j;
-      if (j - i == 2 && edges[i].forward != edges[i + 1].forward)
-        join_faces(edges[i].corner, edges[i + 1].corner);
-      else if (j - i > 1)
-        ++nonmanifold_edges_;
-    }
-  }
-  /// Joins two faces across an edge that leaves `a` in the one and `b` in the other.
-  void join_faces(Index a, Index b) {
-    join(a, next_corner(b));
-    join(next_corner(a), b);
-  }
-  void join(Index a, Index b) {
-    a = fan_of(a);
-    b = fan_of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-  std::vector<Index> parent_;
-  std::size_t nonmanifold_edges_ = 0;
-};
-
-/// Gives every fan but the first of a vertex a vertex of its own, at the same position, and copies of its wedges.
-void cut_into_fans(Mesh& mesh, AssemblyReport& report) {
-  FanFinder fans(mesh);
-  report.nonmanifold_edges = fans.nonmanifold_edges();
-  const std::size_t vertex_count = mesh.vertex_count();
-  std::vector<Index> first_fan(vertex_count, kNoIndex);
-  std::vector<Index> fan_vertex(mesh.corner_wedge.size(), kNoIndex);
-  std::vector<bool> is_cut(vertex_count, false);
-  for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {
-    const Index vertex = mesh.corner_vertex(c);
-    const Index fan = fans.fan_of(c);
-    if (first_fan[vertex] == kNoIndex) first_fan[vertex] = fan;
-    if (fan_vertex[fan] != kNoIndex) continue;
-    fan_vertex[fan] = vertex;
-    if (first_fan[vertex] == fan) continue;
-    fan_vertex[fan] = static_cast<Index>(mesh.positions.size());
-    mesh.positions.push_back(mesh.positions[vertex]);
-    report.cut_vertices += is_cut[vertex] ? 0 : 1;
-    is_cut[vertex] = true;
-  }
-  if (report.cut_vertices == 0) return;
-
-  std::vector<std::uint64_t> copies;  // (wedge, vertex) pairs that need a copy of the wedge, in order of first use
-  HashIndex table(mesh.corner_wedge.size());
-  const std::size_t wedge_count = mesh.wedge_count();
-  for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {
-    const Index vertex = fan_vertex[fans.fan_of(c)];
-    const Index wedge = mesh.corner_wedge[c];
-    if (mesh.wedge_vertex[wedge] == vertex) continue;
-    const std::uint64_t pair = std::uint64_t{wedge} << 32 | vertex;
-    const auto candidate = static_cast<Index>(copies.size());
-    const Index copy = table.find_or_insert(mix_bits(pair), candidate, [&](Index i) { return copies[i] == pair; });
-    if (copy == candidate) {
-      copies.push_back(pair);
-      mesh.wedge_vertex.push_back(vertex);
-    }
-    mesh.corner_wedge[c] = static_cast<Index>(wedge_count) + copy;
-  }
-  for (Attribute& attribute : mesh.attributes) {
-    const std::size_t bytes = attribute.element_bytes();
-    attribute.data.resize(bytes * mesh.wedge_count());
-    for (std::size_t i = 0; i < copies.size(); ++i)
-      std::memcpy(&attribute.data[(wedge_count + i) * bytes], &attribute.data[(copies[i] >> 32) * bytes], bytes);
-  }
 }
 
 }  // namespace

@@ -12,21 +12,27 @@ Edge edge_facing(const Connectivity& mesh, Index corner) {
   return std::minmax({mesh.site(mesh.vertex(next_corner(corner))), mesh.site(mesh.vertex(previous_corner(corner)))});
 }
 
-/// Locks the sites of edges that have one face only. Where sheets were cut apart an edge of one has others beside it.
+/// Locks the sites of edges that have one face only, or several that lie on one another. Where sheets were cut apart an
+/// edge of one has others beside it.
 void lock_borders(const Connectivity& mesh, std::vector<std::uint8_t>& locked) {
-  std::vector<Edge> open;
+  std::vector<std::pair<Edge, Index>> open;  // and the third site of the face
   for (Index c = 0; c < 3 * mesh.face_slot_count(); ++c)
-    if (mesh.opposite(c) == kNoIndex) open.push_back(edge_facing(mesh, c));
+    if (mesh.opposite(c) == kNoIndex) open.emplace_back(edge_facing(mesh, c), mesh.site(mesh.vertex(c)));
   std::sort(open.begin(), open.end());
+  open.erase(std::unique(open.begin(), open.end()), open.end());
+  const auto is_open = [&](const Edge& edge) {
+    const auto found = std::lower_bound(open.begin(), open.end(), std::pair(edge, Index{0}));
+    return found != open.end() && found->first == edge;
+  };
   std::vector<Edge> joined;
   for (Index c = 0; c < 3 * mesh.face_slot_count(); ++c)
-    if (mesh.opposite(c) != kNoIndex && std::binary_search(open.begin(), open.end(), edge_facing(mesh, c)))
-      joined.push_back(edge_facing(mesh, c));
+    if (mesh.opposite(c) != kNoIndex && is_open(edge_facing(mesh, c))) joined.push_back(edge_facing(mesh, c));
   std::sort(joined.begin(), joined.end());
   for (std::size_t i = 0, j = 0; i < open.size(); i = j) {
-    while (j < open.size() && open[j] == open[i]) ++j;
-    if (j - i > 1 || std::binary_search(joined.begin(), joined.end(), open[i])) continue;
-    locked[open[i].first] = locked[open[i].second] = 1;
+    while (j < open.size() && open[j].first == open[i].first) ++j;
+    const Edge& edge = open[i].first;
+    if (j - i > 1 || std::binary_search(joined.begin(), joined.end(), edge)) continue;
+    locked[edge.first] = locked[edge.second] = 1;
   }
 }
 

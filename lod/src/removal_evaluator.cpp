@@ -48,9 +48,8 @@ double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const 
   return 0.25 * length(b - a) * angle_between(normal_a, normal_b);
 }
 
-bool rejects(Verdict verdict) { return verdict != Verdict::Legal; }
+}  // namespace
 
-/// Takes over a trial that is better than the best so far; where none is legal yet, why this one is not.
 bool take_better(Evaluation& best, const Evaluation& found) {
   if (rejects(found.verdict)) {
     if (rejects(best.verdict)) best.verdict = found.verdict;
@@ -60,8 +59,6 @@ bool take_better(Evaluation& best, const Evaluation& found) {
   best = found;
   return true;
 }
-
-}  // namespace
 
 double hybrid_cost(double moved, double turned) {
   return std::pow(moved, kDistanceExponent) * std::pow(std::max(turned, kMinCurvatureChange), 1 - kDistanceExponent);
@@ -127,40 +124,6 @@ Evaluation RemovalEvaluator::evaluate_corner(RemovalRecord& record, Choice& choi
   return best;
 }
 
-/// Tries the places that the first copy may move to, for all copies at once.
-Evaluation RemovalEvaluator::evaluate_copies(Index vertex, Removal& removal, Choice& choice) {
-  if (const Verdict verdict = gather(vertex); rejects(verdict)) return {verdict};
-  std::vector<std::pair<std::size_t, Index>> targets;
-  for (std::size_t spoke = 0; spoke < ring_size(); ++spoke)
-    if (is_target(spoke)) targets.emplace_back(spoke, state_->connectivity.site(ring_vertex_[spoke]));
-  Evaluation best{Verdict::Link};
-  for (const auto& [spoke, site] : targets) {
-    if (choice[0] != kNoChoice && choice[0] != spoke) continue;
-    if (!take_better(best, evaluate_copies_at(vertex, site, trial_copies_))) continue;
-    choice[0] = static_cast<std::uint8_t>(spoke);
-    std::swap(removal, trial_copies_);
-  }
-  return best;
-}
-
-Evaluation RemovalEvaluator::evaluate_copies_at(Index vertex, Index target_site, Removal& removal) {
-  const Connectivity& mesh = state_->connectivity;
-  removal.clear();
-  Evaluation sum{Verdict::Legal};
-  for (Index copy = vertex;;) {
-    if (const Verdict verdict = gather(copy); rejects(verdict)) return {verdict};
-    std::size_t spoke = 0;
-    while (spoke < ring_size() && mesh.site(ring_vertex_[spoke]) != target_site) ++spoke;
-    if (spoke == ring_size() || !is_target(spoke)) return {Verdict::Link};  // a sheet that does not reach there
-    const Evaluation evaluation = evaluate_collapse(spoke, removal.emplace_back());
-    if (rejects(evaluation.verdict)) return evaluation;
-    sum.cost += evaluation.cost;
-    sum.curvature_error = std::max(sum.curvature_error, evaluation.curvature_error);
-    copy = mesh.next_copy(copy);
-    if (copy == vertex) return sum;
-  }
-}
-
 Evaluation RemovalEvaluator::evaluate_collapse(std::size_t target, RemovalRecord& record) {
   const Connectivity& mesh = state_->connectivity;
   if (star_.is_plain()) {
@@ -209,6 +172,7 @@ void RemovalEvaluator::gather_normals() {
   outer_normal_.resize(fine_corner_.size());
   has_outer_.assign(fine_corner_.size(), 0);
   bends_.assign(fine_corner_.size(), 0);
+  const Index site = mesh.site(mesh.vertex(fine_corner_.front()));
   const auto corner_position = [&](Index corner) { return Vec3(state_->mesh.positions[mesh.vertex(corner)]); };
   for (std::size_t i = 0; i < fine_corner_.size(); ++i) {
     const Vec3& a = ring_position_[i];
@@ -216,7 +180,7 @@ void RemovalEvaluator::gather_normals() {
     fine_normal_[i] = cross(a - center_, b - center_);
     has_direction_[i] = has_direction(squared_length(fine_normal_[i]), squared_longest_edge(center_, a, b)) ? 1 : 0;
     const Index outer = mesh.opposite(fine_corner_[i]);
-    has_outer_[i] = outer != kNoIndex ? 1 : 0;
+    has_outer_[i] = outer != kNoIndex && mesh.site(mesh.vertex(outer)) != site ? 1 : 0;
     bends_[i] = outer != kNoIndex && !mesh.is_crease(fine_corner_[i]) ? 1 : 0;
     if (needs_dihedrals_ && outer != kNoIndex) outer_normal_[i] = cross(a - b, corner_position(outer) - b);
   }
@@ -233,9 +197,12 @@ bool RemovalEvaluator::gather_links(Index vertex) {
     ring = i;
   }
   linked_.assign(ring_size() * ring_size(), 0);
-  const auto link = [&](Index from, Index to_vertex) {
+  const auto link = [&](Index from, Index at, Index to_vertex) {
     const Index to = ring_of_site_[mesh.site(to_vertex)];
-    if (to != kNoIndex) linked_[from * ring_size() + to] = linked_[to * ring_size() + from] = 1;
+    if (to == kNoIndex) return;
+    const bool here = at == ring_vertex_[from] && to_vertex == ring_vertex_[to];
+    for (std::uint8_t* l : {&linked_[from * ring_size() + to], &linked_[to * ring_size() + from]})
+      *l = *l | (here ? kLinkedHere : kLinkedElsewhere);
   };
   const auto link_all = [&](Index from, Index at) {
     const Index start = mesh.corner_at(at);
@@ -243,11 +210,11 @@ bool RemovalEvaluator::gather_links(Index vertex) {
     Index corner = start;
     for (Index left = start; left != kNoIndex;) {
       corner = left;
-      link(from, mesh.vertex(next_corner(corner)));
+      link(from, at, mesh.vertex(next_corner(corner)));
       left = mesh.swing_left(corner);
       if (left == start) break;
     }
-    link(from, mesh.vertex(previous_corner(corner)));  // at a border no other corner has seen it
+    link(from, at, mesh.vertex(previous_corner(corner)));  // at a border no other corner has seen it
   };
   for (Index i = 0; i < ring_size() && ring_size() > 2; ++i) {
     link_all(i, ring_vertex_[i]);
@@ -256,26 +223,26 @@ bool RemovalEvaluator::gather_links(Index vertex) {
   }
   for (const Index v : ring_vertex_) ring_of_site_[mesh.site(v)] = kNoIndex;
   if (ring_size() == 3 && star_.closed) {
-    simple = simple && !has_face_over_ring();
+    simple = simple && !has_face(0, 1, 2) && !has_face(0, 2, 1);
   }
   return simple && ring_vertex_[0] != vertex;
 }
 
-/// Whether a face joins the three vertices of the ring, in any sheet.
-bool RemovalEvaluator::has_face_over_ring() const {
+/// Whether a face joins three vertices of the ring in this order, in any sheet.
+bool RemovalEvaluator::has_face(std::size_t first, std::size_t second, std::size_t third) const {
   const Connectivity& mesh = state_->connectivity;
   const auto site = [&](std::size_t i) { return mesh.site(ring_vertex_[i]); };
-  for (Index copy = ring_vertex_[0];;) {
+  for (Index copy = ring_vertex_[first];;) {
     const Index start = mesh.corner_at(copy);
     for (Index corner = start; corner != kNoIndex;) {
-      const Index a = mesh.site(mesh.vertex(next_corner(corner)));
-      const Index b = mesh.site(mesh.vertex(previous_corner(corner)));
-      if ((a == site(1) && b == site(2)) || (a == site(2) && b == site(1))) return true;
+      if (mesh.site(mesh.vertex(next_corner(corner))) == site(second) &&
+          mesh.site(mesh.vertex(previous_corner(corner))) == site(third))
+        return true;
       corner = mesh.swing_left(corner);
       if (corner == start) break;
     }
     copy = mesh.next_copy(copy);
-    if (copy == ring_vertex_[0]) return false;
+    if (copy == ring_vertex_[first]) return false;
   }
 }
 
@@ -437,7 +404,6 @@ Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std:
   patch.triangles.clear();
   const std::size_t size = sector.size();
   if (size == 2) return Verdict::Legal;
-  reset_triangles(size);
   std::size_t apex = size - 1;
   if (!sector.is_moved()) {
     apex = 0;
@@ -445,6 +411,13 @@ Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std:
   }
   const Triangles triangles = fills_.fan(size, apex);
   patch.triangles.assign(triangles.begin(), triangles.end());
+  return judge_filled(sector, patch);
+}
+
+/// Judges the triangles that a sector has been given.
+Verdict RemovalEvaluator::judge_filled(Sector& sector, const SectorPatch& patch) {
+  if (sector.size() == 2) return Verdict::Legal;
+  reset_triangles(sector.size());
   if (options_->metric == Metric::Hybrid) gather_points(sector);
   return judge(sector, patch.triangles);
 }

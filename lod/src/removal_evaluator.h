@@ -40,6 +40,7 @@ enum class Verdict : std::uint8_t { Legal, Locked, Turn, Link, Shape, Texture, R
 /// again.
 using Choice = std::array<std::uint8_t, 2>;
 inline constexpr std::uint8_t kNoChoice = 255;
+inline constexpr std::uint8_t kAlongSpoke = 254;  // in place of the second: copies moved along the spoke named first
 
 struct Evaluation {
   Verdict verdict = Verdict::Locked;
@@ -47,13 +48,19 @@ struct Evaluation {
   double curvature_error = 0;  ///< ε, in the metric's own unit
 };
 
+inline bool rejects(Verdict verdict) { return verdict != Verdict::Legal; }
+
+/// Takes over a trial that is better than the best so far; where none is legal yet, why this one is not.
+bool take_better(Evaluation& best, const Evaluation& found);
+
 /// A removal as evaluated: a record for the vertex, and one for each of its copies.
 using Removal = std::vector<RemovalRecord>;
 
 /// Finds the best way to remove a vertex, and what it costs.
 ///
-/// Interior vertices and those on a line leave a hole that is retriangulated. Corners move to a neighbour, and so do
-/// the copies of a vertex that was cut into sheets: all to the same place, so that the sheets stay together.
+/// Interior vertices and those on a line leave a hole that is retriangulated. Corners move to a neighbour. The copies of
+/// a vertex that was cut into sheets go together: where the sheets coincide their holes are filled alike, elsewhere all
+/// move to one place.
 ///
 /// Keeps scratch memory of one star: one object for each thread.
 class RemovalEvaluator {
@@ -104,12 +111,17 @@ class RemovalEvaluator {
     bool carries_from = true;  // whether it takes over what the line to `from` stood for
   };
   using Triangles = std::span<const PolygonTriangle>;
+  // How an edge joins two ring vertices: in the sheet looked at, or in another.
+  static constexpr std::uint8_t kLinkedHere = 1;
+  static constexpr std::uint8_t kLinkedElsewhere = 2;
   /// How far new faces may turn from the old ones at their rim.
   enum class TurnLimit : std::uint8_t { Acute, Right, None };
 
   Evaluation evaluate_hole(RemovalRecord& record, Choice& choice);
   Evaluation evaluate_corner(RemovalRecord& record, Choice& choice);
   Evaluation evaluate_copies(Index vertex, Removal& removal, Choice& choice);
+  Evaluation evaluate_layers(Index vertex, Removal& removal, Choice& choice);
+  Evaluation evaluate_layer(const RemovalRecord& filled, RemovalRecord& record);
   Evaluation evaluate_copies_at(Index vertex, Index target_site, Removal& removal);
   Evaluation evaluate_collapse(std::size_t target, RemovalRecord& record);
 
@@ -117,7 +129,12 @@ class RemovalEvaluator {
   void gather_ring();
   void gather_normals();
   bool gather_links(Index vertex);
-  bool has_face_over_ring() const;
+  bool has_face(std::size_t first, std::size_t second, std::size_t third) const;
+  bool falls_onto_face(std::size_t target) const;
+  bool copy_triangles(const RemovalRecord& filled, SectorPatch& patch);
+  Index widest_copy(Index vertex);
+  void gather_shared_ends(Index vertex, Index target_site);
+  void pass_shared_ends(std::size_t target);
   void gather_points(const Sector& sector);
   void gather_outside_curvature();
   bool is_target(std::size_t spoke) const;
@@ -131,6 +148,7 @@ class RemovalEvaluator {
   Verdict check_closing_edge() const;
   Verdict check_target(std::size_t target) const;
   Verdict fill_with_fan(Sector& sector, SectorPatch& patch, std::size_t target);
+  Verdict judge_filled(Sector& sector, const SectorPatch& patch);
   Verdict choose(Sector& sector, SectorPatch& patch, std::uint8_t& choice);
   Triangles candidate(const Sector& sector, int which);
   Triangles least_volume(const Sector& sector);
@@ -199,11 +217,13 @@ class RemovalEvaluator {
   std::vector<Vec3> fine_normal_;            // of the star's faces
   std::vector<std::uint8_t> has_direction_;  // whether that of a fine face is more than rounding
   std::vector<Vec3> outer_normal_;           // of the faces beyond the rim; unset at a border
+  // Whether a face beyond the rim stays: there is one, and it is not in another copy's star.
   std::vector<std::uint8_t> has_outer_;
   std::vector<std::uint8_t> bends_;  // whether the angle at the rim is curvature: there is a face beyond, and no crease
   std::vector<VertexCurvature> outside_;  // the ring's curvature without the star
   std::vector<VertexCurvature> after_;    // and with a retriangulation
-  std::vector<std::uint8_t> linked_;      // which ring vertices an edge joins
+  std::vector<std::uint8_t> linked_;      // which ring vertices an edge joins, and in which sheets
+  std::vector<Index> shared_ends_;        // sites, sorted: see gather_shared_ends
   std::vector<Index> ring_of_site_;       // by vertex, the first of its copies; kNoIndex outside the ring
   PointBatch points_;                     // the sector's carried points
   std::vector<float> weights_;            // of those points

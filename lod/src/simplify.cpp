@@ -118,6 +118,10 @@ void Simplifier::prepare() {
   state_.original_curvature.resize(count);
   for (Index v = 0; v < count; ++v)
     state_.original_curvature[v] = static_cast<float>(metric_curvature(options_, state_.curvature[v]));
+  for (Index v = 0; v < options_.importance.size(); ++v) {
+    float& of_all = options_.importance[state_.connectivity.site(v)];
+    of_all = std::max(of_all, options_.importance[v]);
+  }
   cost_.assign(count, kIllegal);
   choice_.assign(count, {kNoChoice, kNoChoice});
   stale_.assign(count, 0);

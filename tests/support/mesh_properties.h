@@ -71,17 +71,17 @@ inline Place place_of(const Mesh& mesh, Index vertex) {
   return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
 }
 
-/// Returns the ends of all edges that only one face has: of borders, and of cracks.
+/// Returns the ends of all edges that only one face has, or several that lie on one another: of borders, and of cracks.
 inline std::set<Place> open_places(const Mesh& mesh) {
-  std::map<std::pair<Place, Place>, int> faces;
+  std::map<std::pair<Place, Place>, std::set<Place>> beside;
   for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {
     const Place a = place_of(mesh, mesh.corner_vertex(c));
     const Place b = place_of(mesh, mesh.corner_vertex(next_corner(c)));
-    ++faces[std::minmax(a, b)];
+    beside[std::minmax(a, b)].insert(place_of(mesh, mesh.corner_vertex(previous_corner(c))));
   }
   std::set<Place> places;
-  for (const auto& [edge, count] : faces) {
-    if (count > 1) continue;
+  for (const auto& [edge, thirds] : beside) {
+    if (thirds.size() > 1) continue;
     places.insert(edge.first);
     places.insert(edge.second);
   }

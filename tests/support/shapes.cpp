@@ -499,6 +499,30 @@ TriangleSoup disagreeing_pair() {
   return soup;
 }
 
+TriangleSoup random_squares(int n, std::uint64_t seed) {
+  TriangleSoup soup;
+  Random random(seed);
+  for (int i = 0; i < n * n * n; ++i) add_point(soup, i % n, i / n % n, i / (n * n));
+  const int step[] = {1, n, n * n};
+  const std::uint64_t sparse = 2 + seed % 3;
+  for (int i = 0; i < n * n * n; ++i) {
+    const int place[] = {i % n, i / n % n, i / (n * n)};
+    for (int axis = 0; axis < 3; ++axis) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      if (place[u] + 1 == n || place[v] + 1 == n || random.below(sparse) > 0) continue;
+      std::array<Index, 4> square{};
+      for (int k = 0; k < 4; ++k)
+        square[k] = static_cast<Index>(i + (k == 1 || k == 2 ? step[u] : 0) + (k > 1 ? step[v] : 0));
+      for (std::uint64_t times = 1 + random.below(4) / 3; times > 0; --times) {
+        std::rotate(square.begin(), square.begin() + static_cast<std::ptrdiff_t>(random.below(2)), square.end());
+        if (random.below(2) == 0) std::reverse(square.begin(), square.end());
+        add_square(soup, square[0], square[1], square[2], square[3]);
+      }
+    }
+  }
+  return soup;
+}
+
 TriangleSoup dirty_grid(int n) {
   TriangleSoup soup = grid(n, 0, 0);
   const Index infinite = add_point(soup, std::numeric_limits<double>::infinity(), 0, 0);
@@ -541,6 +565,25 @@ TriangleSoup two_sided(const TriangleSoup& shape) {
   TriangleSoup soup = shape;
   for (std::size_t t = 0; t < shape.indices.size(); t += 3)
     add_triangle(soup, shape.indices[t], shape.indices[t + 2], shape.indices[t + 1]);
+  return soup;
+}
+
+TriangleSoup two_sided_squares(int n) {
+  TriangleSoup soup = terrain(n, 7);
+  const auto point = [&](int i, int j) { return static_cast<Index>(j * (n + 1) + i); };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) add_square(soup, point(i, j + 1), point(i + 1, j + 1), point(i + 1, j), point(i, j));
+  return soup;
+}
+
+TriangleSoup shuffled(const TriangleSoup& shape, std::uint64_t seed) {
+  TriangleSoup soup = shape;
+  Random random(seed);
+  for (std::size_t left = shape.indices.size() / 3; left > 1; --left) {
+    const std::size_t other = random.below(left);
+    for (std::size_t k = 0; k < 3; ++k) std::swap(soup.indices[3 * (left - 1) + k], soup.indices[3 * other + k]);
+    if (!soup.face_material.empty()) std::swap(soup.face_material[left - 1], soup.face_material[other]);
+  }
   return soup;
 }
 
@@ -599,6 +642,14 @@ std::vector<NamedShape> all_shapes() {
       {"three at one edge", three_at_one_edge(), false, std::nullopt},
       {"disagreeing pair", disagreeing_pair(), false, std::nullopt},
       {"dirty grid 4", dirty_grid(4), false, std::nullopt},
+      {"two-sided terrain 8", two_sided(terrain(8, 3)), false, std::nullopt},
+      {"two-sided icosphere 2", two_sided(icosphere(2, 0.05, 4)), false, std::nullopt},
+      {"two-sided squares 8", two_sided_squares(8), false, std::nullopt},
+      {"three layers of terrain 8", layered(terrain(8, 3), 3), false, std::nullopt},
+      {"two layers of seam cube 3", stacked(seam_cube(3), 2), false, std::nullopt},
+      {"two layers of skinned cylinder 8 x 4", stacked(skinned_cylinder(8, 4), 2), false, std::nullopt},
+      {"decal on icosphere 2", with_decal(icosphere(2, 0.05, 4), 1), false, std::nullopt},
+      {"decal at the border of terrain 10", with_decal(terrain(10, 3), 0.5), false, std::nullopt},
   };
 }
 

@@ -77,6 +77,9 @@ TriangleSoup bow_tie();
 TriangleSoup three_at_one_edge();
 /// Two neighbours with opposite winding.
 TriangleSoup disagreeing_pair();
+/// Some of the squares of a cubic lattice of n³ points, cut along either diagonal and facing either way, some twice: edges
+/// of many faces, folds, faces back to back.
+TriangleSoup random_squares(int n, std::uint64_t seed);
 /// A grid with degenerate, duplicate and non-finite triangles and an unused point added.
 TriangleSoup dirty_grid(int n);
 
@@ -85,10 +88,15 @@ TriangleSoup dirty_grid(int n);
 TriangleSoup stacked(const TriangleSoup& shape, int count);
 /// `count` times the shape: sheet i has material i.
 TriangleSoup layered(const TriangleSoup& shape, int count);
-/// The shape, and every face of it once more, turned over.
+/// The shape, and every face of it once more, turned over; both use the same points.
 TriangleSoup two_sided(const TriangleSoup& shape);
+/// A hilly grid of n × n squares, and its back, where the squares are cut along their other diagonals.
+TriangleSoup two_sided_squares(int n);
 /// The shape in material 0, and in material 1 once more what lies within `radius` of its first point.
 TriangleSoup with_decal(const TriangleSoup& shape, double radius);
+
+/// The shape with its faces in another order.
+TriangleSoup shuffled(const TriangleSoup& shape, std::uint64_t seed);
 
 /// A shape with what is known of it.
 struct NamedShape {
