@@ -125,6 +125,7 @@ class BuildRun {
   void take_mesh_level(LevelJob&& job);
   void report_level(const SceneChoice& choice);
   bool report_missed_targets() const;
+  void add_note(const std::string& note);
   Result<void> encode_streams();
   Result<std::vector<EncodedAsset>> encode();
   void measure_levels(std::span<std::vector<AssetLevel>> meshes, std::size_t first);
@@ -434,6 +435,14 @@ bool BuildRun::report_missed_targets() const {
   return true;
 }
 
+/// Says what the file has otherwise than one would think; once, where several files have it.
+void BuildRun::add_note(const std::string& note) {
+  std::vector<std::string>& notes = report_.input.notes;
+  if (std::find(notes.begin(), notes.end(), note) != notes.end()) return;
+  notes.push_back(note);
+  print_warning(note);
+}
+
 /// A mesh that is beyond the stream's limits goes without one; its levels do not need it.
 Result<void> BuildRun::encode_streams() {
   if (!wants_streams()) return {};
@@ -441,10 +450,8 @@ Result<void> BuildRun::encode_streams() {
     Result<std::vector<std::byte>> stream = encode_stream(simplified_[i].mesh);
     if (!stream && stream.error().code != ErrorCode::LimitExceeded) return tl::unexpected(stream.error());
     if (!stream) {
-      const std::string note = "mesh " + tool::quoted(std::string_view(scene_->meshes()[i].name)) +
-                               " has no removal stream: " + stream.error().message;
-      report_.input.notes.push_back(note);
-      print_warning(note);
+      add_note("mesh " + tool::quoted(std::string_view(scene_->meshes()[i].name)) +
+               " has no removal stream: " + stream.error().message);
       continue;
     }
     report_.meshes[i].stream.bytes = stream->size();
@@ -462,6 +469,7 @@ Result<std::vector<EncodedAsset>> BuildRun::encode() {
     Result<EncodedAsset> asset = has_file_per_level(options_) ? encode_scene_level(*scene_, levels_, i, options)
                                                               : encode_scene(*scene_, levels_, options);
     if (!asset) return tl::unexpected(asset.error());
+    for (const std::string& note : asset->layout.notes) add_note(note);
     assets.push_back(std::move(*asset));
   }
   return assets;

@@ -105,6 +105,15 @@ void set_grids(draco::ExpertEncoder& encoder, const MeshBuilder& builder, const 
   }
 }
 
+void set_coding(draco::ExpertEncoder& encoder, const MeshBuilder& builder, const Mesh& mesh,
+                const DracoCoding& coding) {
+  if (coding.method == DracoMethod::Sequential) encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+  if (coding.prediction == DracoPrediction::Positions) return;
+  for (std::size_t i = 0; i < mesh.attributes.size(); ++i)
+    if (draco_semantic(mesh.attributes[i]) == draco::GeometryAttribute::TEX_COORD)
+      encoder.SetAttributePredictionScheme(builder.attribute_ids()[i], draco::MESH_PREDICTION_PARALLELOGRAM);
+}
+
 /// Draco multiplies differences by up to 2^30.
 bool is_quantisable(std::span<const std::byte> values, float range) {
   constexpr float kLargest = std::numeric_limits<float>::max() / 4;
@@ -125,17 +134,17 @@ bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids) {
   return true;
 }
 
-Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, DracoMethod method,
+Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, const DracoCoding& coding,
                                     int compression_level) {
   try {
     const MeshBuilder builder(mesh);
     draco::ExpertEncoder encoder(builder.mesh());
     encoder.SetSpeedOptions(10 - compression_level, 10 - compression_level);
-    if (method == DracoMethod::Sequential) encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+    set_coding(encoder, builder, mesh, coding);
     set_grids(encoder, builder, mesh, grids);
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeToBuffer(&buffer);
-    if (!status.ok()) return fail(ErrorCode::InvalidArgument, text("Draco: ", status.error_msg_string()));
+    if (!status.ok()) return fail(ErrorCode::Unsupported, text("Draco: ", status.error_msg_string()));
 
     DracoPrimitive primitive;
     const auto bytes = std::as_bytes(std::span(buffer.data(), buffer.size()));
@@ -145,7 +154,7 @@ Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& g
       primitive.attribute_ids.push_back(builder.mesh().attribute(id)->unique_id());
     return primitive;
   } catch (const std::exception& error) {
-    return fail(ErrorCode::InvalidArgument, text("Draco: ", error.what()));
+    return fail(ErrorCode::Unsupported, text("Draco: ", error.what()));
   }
 }
 

@@ -32,6 +32,18 @@ enum class DracoMethod {
   Sequential,   ///< keeps the order of points, for data that lies outside
 };
 
+/// What texture coordinates are predicted from.
+enum class DracoPrediction {
+  Positions,   ///< smallest; fails for some charts
+  Neighbours,  ///< the coordinates of the face beside
+};
+
+/// One of the ways to encode a mesh.
+struct DracoCoding {
+  DracoMethod method = DracoMethod::Edgebreaker;
+  DracoPrediction prediction = DracoPrediction::Positions;
+};
+
 /// What a primitive's Draco data holds.
 struct DracoPrimitive {
   std::vector<std::byte> bytes;
@@ -44,8 +56,8 @@ bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids);
 
 /// Compresses a mesh. Float attributes are quantised in their grids, integers are kept exactly.
 /// `compression_level` is 0 to 10. Pre: `can_encode_draco`; there are faces; wedges and vertices stand in the order of
-/// their first use. Errors: InvalidArgument with Draco's reason.
-Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, DracoMethod method,
+/// their first use. Errors: Unsupported with Draco's reason.
+Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, const DracoCoding& coding,
                                     int compression_level);
 
 }  // namespace lodestone::detail

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "bytes.h"
+#include "draco_check.h"
 #include "draco_decode.h"
 #include "gltf_attribute.h"
 #include "gltf_mesh_writer.h"
@@ -56,17 +57,13 @@ class GeometryWriter {
                  const QuantizationGrids& grids, const AssetOptions& options, WrittenLevel& written)
       : builder_(builder), source_(source), level_(level), grids_(grids), options_(options), written_(written) {}
 
-  Result<std::map<Index, PrimitiveGeometry>> write() {
+  std::map<Index, PrimitiveGeometry> write() {
     const std::vector<FacesOfMaterial> groups = split_by_material(*level_.mesh);
     std::map<Index, PrimitiveGeometry> geometry;
     if (!options_.draco && share_vertices(groups)) return write_shared();
     for (const FacesOfMaterial& group : groups) {
       const SourcePrimitive& primitive = source_.primitives[group.material];
-      if (options_.draco) {
-        LODESTONE_TRY(geometry[group.material], write_draco(primitive, group));
-      } else {
-        geometry[group.material] = write_plain(primitive, group);
-      }
+      geometry[group.material] = options_.draco ? write_draco(primitive, group) : write_plain(primitive, group);
     }
     return geometry;
   }
@@ -145,33 +142,80 @@ class GeometryWriter {
     return targets;
   }
 
-  /// Accessors describe what the encoded bytes decode to, which Draco decides: it may split points, and it moves them.
-  Result<PrimitiveGeometry> write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
-    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, pick(primitive));
-    Mesh compressed = mesh;
-    compressed.attributes.clear();
-    QuantizationGrids grids{grids_.position, {}};
-    std::vector<DracoRequest> requests{{0, ComponentType::Float32, 3, false}};
+  /// What of a primitive goes into Draco data, and what to ask of it to get it back.
+  struct DracoInput {
+    Mesh mesh;
+    QuantizationGrids grids;
+    std::vector<DracoRequest> requests;  ///< positions first
+  };
+
+  DracoInput draco_input(const SourcePrimitive& primitive, const Mesh& mesh) const {
+    DracoInput input{mesh, {grids_.position, {}}, {{0, ComponentType::Float32, 3, false}}};
+    input.mesh.attributes.clear();
     for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
       if (source_.columns[primitive.columns[i]].target) continue;
       const Attribute& a = mesh.attributes[i];
-      compressed.attributes.push_back(a);
-      grids.attributes.push_back(grids_.attributes[primitive.columns[i]]);
-      requests.push_back({0, a.type, a.component_count, a.normalized});
+      input.mesh.attributes.push_back(a);
+      input.grids.attributes.push_back(grids_.attributes[primitive.columns[i]]);
+      input.requests.push_back({0, a.type, a.component_count, a.normalized});
     }
-    if (!can_encode_draco(compressed, grids)) return write_plain(primitive, group);
-    const auto method = primitive.target_count > 0 ? DracoMethod::Sequential : DracoMethod::Edgebreaker;
-    LODESTONE_TRY(const DracoPrimitive encoded,
-                  encode_draco(compressed, grids, method, options_.draco_compression_level));
-    requests[0].unique_id = encoded.position_id;
-    for (std::size_t i = 1; i < requests.size(); ++i) requests[i].unique_id = encoded.attribute_ids[i - 1];
-    LODESTONE_TRY(const DracoGeometry decoded, decode_draco(encoded.bytes, requests, "encoded level"));
-    // Targets must be in the order of the decoded points. A decoder that reorders them leaves only the plain form.
-    if (primitive.target_count > 0 && decoded.indices != mesh.corner_wedge) return write_plain(primitive, group);
-    PrimitiveGeometry geometry = describe_draco(primitive, encoded, decoded);
+    return input;
+  }
+
+  /// Draco data, and what it decodes to.
+  struct DracoOutput {
+    DracoPrimitive encoded;
+    DracoGeometry decoded;
+  };
+
+  Result<DracoOutput> encode(const DracoInput& input, const DracoCoding& coding) const {
+    DracoOutput output;
+    LODESTONE_TRY(output.encoded, encode_draco(input.mesh, input.grids, coding, options_.draco_compression_level));
+    std::vector<DracoRequest> requests = input.requests;
+    requests[0].unique_id = output.encoded.position_id;
+    for (std::size_t i = 1; i < requests.size(); ++i) requests[i].unique_id = output.encoded.attribute_ids[i - 1];
+    LODESTONE_TRY(output.decoded, decode_draco(output.encoded.bytes, requests, "encoded level"));
+    LODESTONE_CHECK(check_decoded(output.decoded, input.mesh, input.grids));
+    return output;
+  }
+
+  /// Targets must be in the order of the decoded points. A decoder that reorders them leaves only the plain form.
+  Result<DracoOutput> encode_in_order(const DracoInput& input) const {
+    LODESTONE_TRY(DracoOutput output, encode(input, {DracoMethod::Sequential, DracoPrediction::Neighbours}));
+    if (output.decoded.indices == input.mesh.corner_wedge) return output;
+    return fail(ErrorCode::Unsupported, "Draco: the points are decoded in another order");
+  }
+
+  /// Tries one way after the other; returns the last one's error where all fail.
+  Result<DracoOutput> encode_smallest(const DracoInput& input) const {
+    constexpr DracoCoding kCodings[] = {{DracoMethod::Edgebreaker, DracoPrediction::Positions},
+                                        {DracoMethod::Edgebreaker, DracoPrediction::Neighbours},
+                                        {DracoMethod::Sequential, DracoPrediction::Neighbours}};
+    Result<DracoOutput> output;
+    for (const DracoCoding& coding : kCodings)
+      if (output = encode(input, coding); output) break;
+    return output;
+  }
+
+  /// Accessors describe what the encoded bytes decode to, which Draco decides: it may split points, and it moves them.
+  PrimitiveGeometry write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
+    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, pick(primitive));
+    const DracoInput input = draco_input(primitive, mesh);
+    if (!can_encode_draco(input.mesh, input.grids))
+      return write_uncompressed(primitive, group, "Draco cannot quantise its numbers");
+    const auto output = primitive.target_count > 0 ? encode_in_order(input) : encode_smallest(input);
+    if (!output) return write_uncompressed(primitive, group, output.error().message);
+    PrimitiveGeometry geometry = describe_draco(primitive, output->encoded, output->decoded);
     geometry.targets = write_targets(primitive, mesh);
-    if (options_.measure) note_decoded(primitive, group.material, decoded_mesh(primitive, decoded, mesh));
+    if (options_.measure) note_decoded(primitive, group.material, decoded_mesh(primitive, output->decoded, mesh));
     return geometry;
+  }
+
+  PrimitiveGeometry write_uncompressed(const SourcePrimitive& primitive, const FacesOfMaterial& group,
+                                       const std::string& reason) {
+    written_.notes.push_back(
+        text("mesh ", source_.mesh, " primitive ", group.material, " is stored without Draco: ", reason));
+    return write_plain(primitive, group);
   }
 
   /// Returns what a client gets of a primitive: targets as they were, the rest out of Draco data.
@@ -285,7 +329,7 @@ Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, c
   WrittenLevel written;
   const std::uint64_t begin = (builder.binary_bytes() + 3) / 4 * 4;
   GeometryWriter writer(builder, source, level, grids, options, written);
-  LODESTONE_TRY(const auto geometry, writer.write());
+  const std::map<Index, PrimitiveGeometry> geometry = writer.write();
   if (options.measure) {
     LODESTONE_TRY(written.decoded, writer.decoded());
   }

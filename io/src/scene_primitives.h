@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
@@ -31,6 +32,7 @@ struct WrittenLevel {
   std::uint64_t vertex_count = 0;
   std::uint64_t byte_count = 0;  ///< of its geometry
   Mesh decoded;                  ///< as clients get it, with the source's columns; only where `measure` will see it
+  std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each
 };
 
 /// Writes a level's geometry and describes it by `source_mesh`, the mesh's object in the document: primitives keep

@@ -157,6 +157,7 @@ class SceneWriter {
         const MeshSource& source = impl_.sources[mesh];
         LODESTONE_TRY(written, write_level(builder_, impl_.document.json()["meshes"][source.mesh], source,
                                            geometry_[mesh][level], grids_[mesh], options_));
+        for (const std::string& note : written.notes) add_note(note);
       }
       layout.geometry_bytes += written.byte_count;
       layout.face_count += written.face_count * scene_.meshes()[mesh].instance_count;
@@ -165,6 +166,12 @@ class SceneWriter {
     layout.byte_offset = begin;
     layout.byte_length = std::max(begin, builder_.binary_bytes()) - begin;
     return {};
+  }
+
+  /// Levels of one mesh mostly have the same to say.
+  void add_note(const std::string& note) {
+    std::vector<std::string>& notes = layout_.notes;
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   }
 
   void measure_levels() {

@@ -55,6 +55,7 @@ struct AssetLayout {
   double quantisation_error = 0;  ///< the farthest Draco moves a vertex, world units; 0 without Draco
   std::uint64_t stream_bytes = 0;
   std::uint64_t total_bytes = 0;
+  std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each
 };
 
 struct EncodedAsset {
