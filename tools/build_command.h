@@ -38,7 +38,7 @@ struct BuildCommand {
   std::string profile = "msft-lod";
   bool no_stream = false;
   bool no_draco = false;
-  int position_bits = 14;
+  std::optional<int> position_bits;  ///< unset: 14, or what the shape needs
   std::optional<double> grid_step;  ///< in place of bits
   std::vector<double> grid_origin{0, 0, 0};
   bool quiet = false;

@@ -116,8 +116,8 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", !options.no_stream && !has_file_per_level(options)},
                {"draco", !options.no_draco}};
-  const bool has_bits = !options.no_draco && !options.grid_step;
-  json["position_bits"] = has_bits ? Json(options.position_bits) : Json(nullptr);
+  const bool has_bits = !options.no_draco && options.position_bits;
+  json["position_bits"] = has_bits ? Json(*options.position_bits) : Json(nullptr);
   json["position_grid"] = nullptr;
   if (!options.no_draco && options.grid_step)
     json["position_grid"] = {{"step", *options.grid_step}, {"origin", options.grid_origin}};

@@ -78,6 +78,7 @@ Json output_json(const BuildReport& report) {
   return {{"path", report.output_path},
           {"bytes", report.output_bytes},
           {"quantisation_error", report.quantisation_error},
+          {"position_bits", report.position_bits},
           {"files", std::move(files)}};
 }
 

@@ -81,6 +81,7 @@ struct BuildReport {
   std::uint64_t output_bytes = 0;  ///< of all files together
   std::vector<OutputFile> files;   ///< more than one with `--profile files`
   double quantisation_error = 0;   ///< the farthest Draco moves a vertex, world units; 0 without Draco
+  int position_bits = 0;           ///< of Draco's finest grid; 0 where positions are exact
   Timings timings_ms;
 };
 

@@ -1,6 +1,7 @@
 #include "build_run.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -29,6 +30,8 @@ namespace lodestone::tool {
 namespace {
 
 constexpr double kMostFacesOfOneRemoval = 2;
+constexpr double kQuantisationShare = 0.1;  // of an error that a level may have
+constexpr double kBoxGrowth = 1.05;         // fitted vertices may lie a little outside of the box that grids span
 
 AssemblyReport assembly_of(const Scene& scene) {
   AssemblyReport total;
@@ -118,6 +121,8 @@ class BuildRun {
   void report_simplified(const SceneMesh& mesh, const SimplifyResult& result);
   std::vector<double> world_charges(const SimplifyResult& result, double scale) const;
   std::vector<SceneChoice> choose_levels() const;
+  AssetOptions storage() const;
+  double smallest_error() const;
   bool repeats(std::size_t mesh, std::size_t level) const;
   bool is_whole(std::size_t mesh, std::size_t level) const;
   void make_levels();
@@ -125,6 +130,8 @@ class BuildRun {
   void take_mesh_level(LevelJob&& job);
   void report_level(const SceneChoice& choice);
   bool report_missed_targets() const;
+  std::string missed_faces(const std::string& targets) const;
+  std::string missed_errors(const std::string& targets) const;
   void add_note(const std::string& note);
   Result<void> encode_streams();
   Result<std::vector<EncodedAsset>> encode();
@@ -294,12 +301,35 @@ void BuildRun::make_levels() {
   report_.timings_ms.levels = stopwatch_.lap_ms();
 }
 
+/// The smallest error that a level may have, world units; infinite where levels are not by error.
+double BuildRun::smallest_error() const {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const LevelTarget& target : targets_) {
+    if (target.kind != TargetKind::Error) continue;
+    if (!target.relative || scope() == TargetScope::Scene)
+      smallest = std::min(smallest, resolve(target, {0, scene_->box().diagonal()}).value);
+    else
+      for (const SceneMesh& mesh : scene_->meshes())
+        smallest = std::min(smallest, target.value * bounding_box(mesh.mesh).diagonal() * mesh.scale);
+  }
+  return smallest;
+}
+
+/// How the levels are stored: of an error that is asked for, quantisation may take its share.
+AssetOptions BuildRun::storage() const {
+  AssetOptions options = asset_options(options_);
+  options.draco_position_error = kQuantisationShare * smallest_error();
+  return options;
+}
+
 std::vector<ScenePart> BuildRun::parts() const {
+  const std::vector<double> displacements = quantisation_errors(*scene_, storage());
   std::vector<ScenePart> parts;
   for (std::size_t i = 0; i < simplified_.size(); ++i) {
     const SceneMesh& mesh = scene_->meshes()[i];
     parts.push_back({&simplified_[i].mesh, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
-                     settings_.importance_of(mesh), world_charges(simplified_[i], mesh.scale)});
+                     settings_.importance_of(mesh), world_charges(simplified_[i], mesh.scale),
+                     kBoxGrowth * displacements[i]});
   }
   return parts;
 }
@@ -415,7 +445,20 @@ void BuildRun::report_deviation(std::size_t number) {
   report_.levels[number].deviation = total.result();
 }
 
-/// Says which levels have more faces than asked for, and why; returns whether there are any.
+std::string BuildRun::missed_faces(const std::string& targets) const {
+  return targets + " faces were asked for" + (options_.per_mesh ? " of each mesh, " : ", ") +
+         std::to_string(report_.levels.back().face_count) + " are the fewest there are; " +
+         blocked_text(report_.stream.blocked);
+}
+
+/// Only quantisation is in the way of an error: the whole mesh has none.
+std::string BuildRun::missed_errors(const std::string& targets) const {
+  double farthest = 0;
+  for (const ScenePart& part : parts()) farthest = std::max(farthest, part.displacement * part.scale);
+  return "errors of " + targets + " were asked for, Draco's grid alone moves vertices by " + number_text(farthest);
+}
+
+/// Says which levels have more faces or larger errors than asked for, and why; returns whether there are any.
 bool BuildRun::report_missed_targets() const {
   std::string levels;
   std::string targets;
@@ -427,10 +470,9 @@ bool BuildRun::report_missed_targets() const {
                                                 : number_text(level.target->value, 15));
   }
   if (levels.empty()) return false;
-  const std::string message = "target not met by level " + levels + ": " + targets + " faces were asked for" +
-                              (options_.per_mesh ? " of each mesh, " : ", ") +
-                              std::to_string(report_.levels.back().face_count) + " are the fewest there are; " +
-                              blocked_text(report_.stream.blocked);
+  const std::string message = "target not met by level " + levels + ": " +
+                              (targets_.front().kind == TargetKind::Error ? missed_errors(targets)
+                                                                          : missed_faces(targets));
   options_.strict ? print_error(message) : print_warning(message);
   return true;
 }
@@ -461,7 +503,7 @@ Result<void> BuildRun::encode_streams() {
 }
 
 Result<std::vector<EncodedAsset>> BuildRun::encode() {
-  AssetOptions options = asset_options(options_);
+  AssetOptions options = storage();
   std::vector<EncodedAsset> assets;
   const std::size_t file_count = has_file_per_level(options_) ? report_.levels.size() : 1;
   for (std::size_t i = 0; i < file_count; ++i) {
@@ -504,8 +546,10 @@ void BuildRun::report_layouts(std::span<const EncodedAsset> assets) {
   }
   report_.stream.bytes = assets[0].layout.stream_bytes;
   report_.output_path = options_.output.string();
-  for (const EncodedAsset& asset : assets)
+  for (const EncodedAsset& asset : assets) {
     report_.quantisation_error = std::max(report_.quantisation_error, asset.layout.quantisation_error);
+    report_.position_bits = std::max(report_.position_bits, asset.layout.position_bits);
+  }
 }
 
 }  // namespace

@@ -111,7 +111,11 @@ LevelChoice choose_for_part(const ScenePart& part, const LevelTarget& target) {
   if (target.relative && target.kind == TargetKind::Faces) full.face_count = face_counts(*part.mesh).back();
   if (target.relative && target.kind == TargetKind::Error) full.diagonal = diagonal_of(*part.mesh);
   LevelTarget absolute = resolve(target, full);
-  if (target.kind == TargetKind::Error && !target.relative) absolute.value /= part.scale;
+  if (target.kind != TargetKind::Error) return choose_level(*part.mesh, absolute, part.end);
+  if (!target.relative) absolute.value /= part.scale;
+  if (absolute.value < part.displacement)
+    return {absolute, static_cast<Index>(part.mesh->record_count()), false, std::string(name_of(target.kind))};
+  absolute.value -= part.displacement;
   return choose_level(*part.mesh, absolute, part.end);
 }
 

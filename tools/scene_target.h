@@ -23,6 +23,7 @@ struct ScenePart {
   /// By position, falling from coarse to fine: what is lost there, in a unit that all parts share. Empty: the
   /// deviation.
   std::vector<double> loss;
+  double displacement = 0;  ///< how far a file moves its vertices beyond the stream's deviations, mesh units
 };
 
 /// What a target counts over.

@@ -3,11 +3,10 @@
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
-#include <cmath>
+#include <cstdio>
 #include <exception>
-#include <limits>
+#include <string>
 
-#include "bytes.h"
 #include "text.h"
 
 namespace lodestone::detail {
@@ -87,52 +86,46 @@ class MeshBuilder {
   std::vector<int> attribute_ids_;
 };
 
-/// Says how every float attribute is quantised.
-void set_grids(draco::ExpertEncoder& encoder, const MeshBuilder& builder, const Mesh& mesh,
-               const QuantizationGrids& grids) {
-  const auto set_grid = [&](int id, const QuantizationGrid& grid) {
-    encoder.SetAttributeExplicitQuantization(id, grid.bits, static_cast<int>(grid.origin.size()), grid.origin.data(),
-                                             grid.range);
-  };
-  set_grid(builder.position_id(), grids.position);
-  for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
-    if (mesh.attributes[i].type != ComponentType::Float32) continue;
-    const int id = builder.attribute_ids()[i];
-    if (mesh.attributes[i].name == "NORMAL")
-      encoder.SetAttributeQuantization(id, grids.attributes[i].bits);
-    else
-      set_grid(id, grids.attributes[i]);
-  }
+std::string exact_text(float value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.9g", static_cast<double>(value));
+  return digits;
 }
 
-void set_coding(draco::ExpertEncoder& encoder, const MeshBuilder& builder, const Mesh& mesh,
-                const DracoCoding& coding) {
-  if (coding.method == DracoMethod::Sequential) encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
-  if (coding.prediction == DracoPrediction::Positions) return;
+/// Draco's own setters write numbers into its options with six decimals, which small things do not survive.
+void set_grid(draco::Options& options, const QuantizationGrid& grid) {
+  options.SetInt("quantization_bits", grid.bits);
+  std::string origin;
+  for (const float value : grid.origin) origin.append(exact_text(value)).append(1, ' ');
+  options.SetString("quantization_origin", origin);
+  options.SetString("quantization_range", exact_text(grid.range));
+}
+
+/// Says how an attribute is quantised, and how texture coordinates are predicted.
+draco::Options attribute_options(const Attribute& attribute, const QuantizationGrid& grid, const DracoCoding& coding) {
+  draco::Options options;
+  const bool quantised = attribute.type == ComponentType::Float32 && !grid.is_exact();
+  if (quantised && attribute.name == "NORMAL")
+    options.SetInt("quantization_bits", grid.bits);
+  else if (quantised)
+    set_grid(options, grid);
+  if (draco_semantic(attribute) == draco::GeometryAttribute::TEX_COORD &&
+      coding.prediction == DracoPrediction::Neighbours)
+    options.SetInt("prediction_scheme", draco::MESH_PREDICTION_PARALLELOGRAM);
+  return options;
+}
+
+void set_attributes(draco::ExpertEncoder& encoder, const MeshBuilder& builder, const Mesh& mesh,
+                    const QuantizationGrids& grids, const DracoCoding& coding) {
+  draco::Options position;
+  if (!grids.position.is_exact()) set_grid(position, grids.position);
+  encoder.options().SetAttributeOptions(builder.position_id(), position);
   for (std::size_t i = 0; i < mesh.attributes.size(); ++i)
-    if (draco_semantic(mesh.attributes[i]) == draco::GeometryAttribute::TEX_COORD)
-      encoder.SetAttributePredictionScheme(builder.attribute_ids()[i], draco::MESH_PREDICTION_PARALLELOGRAM);
-}
-
-/// Draco multiplies differences by up to 2^30.
-bool is_quantisable(std::span<const std::byte> values, float range) {
-  constexpr float kLargest = std::numeric_limits<float>::max() / 4;
-  if (!(range <= kLargest)) return false;
-  for (std::size_t at = 0; at < values.size(); at += sizeof(float))
-    if (!(std::abs(load_f32(values, at)) <= kLargest)) return false;
-  return true;
+    encoder.options().SetAttributeOptions(builder.attribute_ids()[i],
+                                          attribute_options(mesh.attributes[i], grids.attributes[i], coding));
 }
 
 }  // namespace
-
-bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids) {
-  if (!is_quantisable(std::as_bytes(std::span(mesh.positions)), grids.position.range)) return false;
-  for (std::size_t i = 0; i < mesh.attributes.size(); ++i)
-    if (mesh.attributes[i].type == ComponentType::Float32 &&
-        !is_quantisable(mesh.attributes[i].data, grids.attributes[i].range))
-      return false;
-  return true;
-}
 
 Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, const DracoCoding& coding,
                                     int compression_level) {
@@ -140,8 +133,8 @@ Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& g
     const MeshBuilder builder(mesh);
     draco::ExpertEncoder encoder(builder.mesh());
     encoder.SetSpeedOptions(10 - compression_level, 10 - compression_level);
-    set_coding(encoder, builder, mesh, coding);
-    set_grids(encoder, builder, mesh, grids);
+    if (coding.method == DracoMethod::Sequential) encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+    set_attributes(encoder, builder, mesh, grids, coding);
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeToBuffer(&buffer);
     if (!status.ok()) return fail(ErrorCode::Unsupported, text("Draco: ", status.error_msg_string()));

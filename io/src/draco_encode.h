@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,10 +15,15 @@ namespace lodestone::detail {
 struct QuantizationGrid {
   std::vector<float> origin;  ///< one per component
   float range = 1;            ///< the edge of the cube, > 0
-  int bits = 14;              ///< 1 to 30
+  int bits = 14;              ///< 1 to 30; 0: none, values stay as they are
 
-  /// The distance of neighbouring values.
-  double step() const { return static_cast<double>(range) / static_cast<double>((std::uint64_t{1} << bits) - 1); }
+  bool is_exact() const { return bits == 0; }
+  /// The distance of neighbouring values; 0 without a grid.
+  double step() const {
+    return is_exact() ? 0 : static_cast<double>(range) / static_cast<double>((std::uint64_t{1} << bits) - 1);
+  }
+  /// The farthest that a point of three components is moved.
+  double point_error() const { return std::sqrt(3.0) / 2 * step(); }
 };
 
 /// The grids of a mesh. NORMAL has its own octahedral form and only uses `bits`; integers use none.
@@ -51,11 +57,8 @@ struct DracoPrimitive {
   std::vector<std::uint32_t> attribute_ids;  ///< unique ids, one per attribute of the mesh
 };
 
-/// True if Draco can quantise all of a mesh's numbers: they are finite, and so is their range.
-bool can_encode_draco(const Mesh& mesh, const QuantizationGrids& grids);
-
 /// Compresses a mesh. Float attributes are quantised in their grids, integers are kept exactly.
-/// `compression_level` is 0 to 10. Pre: `can_encode_draco`; there are faces; wedges and vertices stand in the order of
+/// `compression_level` is 0 to 10. Pre: values on a grid are finite; there are faces; wedges and vertices stand in the order of
 /// their first use. Errors: Unsupported with Draco's reason.
 Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, const DracoCoding& coding,
                                     int compression_level);

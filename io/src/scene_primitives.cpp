@@ -39,6 +39,18 @@ Mesh decoded_surface(const DracoGeometry& decoded) {
   return mesh;
 }
 
+/// Counts the faces with two corners at one place.
+std::uint64_t count_collapsed(const Mesh& mesh) {
+  std::uint64_t count = 0;
+  for (Index corner = 0; corner < mesh.corner_wedge.size(); corner += 3) {
+    const Vec3f& a = mesh.positions[mesh.corner_vertex(corner)];
+    const Vec3f& b = mesh.positions[mesh.corner_vertex(corner + 1)];
+    const Vec3f& c = mesh.positions[mesh.corner_vertex(corner + 2)];
+    count += a == b || b == c || c == a;
+  }
+  return count;
+}
+
 /// Joins what is equal, as readers do. Faces that have lost their area go, unless there are no others: something so
 /// small still is somewhere.
 Result<Mesh> joined(const TriangleSoup& soup) {
@@ -201,8 +213,6 @@ class GeometryWriter {
   PrimitiveGeometry write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
     const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, pick(primitive));
     const DracoInput input = draco_input(primitive, mesh);
-    if (!can_encode_draco(input.mesh, input.grids))
-      return write_uncompressed(primitive, group, "Draco cannot quantise its numbers");
     const auto output = primitive.target_count > 0 ? encode_in_order(input) : encode_smallest(input);
     if (!output) return write_uncompressed(primitive, group, output.error().message);
     PrimitiveGeometry geometry = describe_draco(primitive, output->encoded, output->decoded);
@@ -232,6 +242,7 @@ class GeometryWriter {
                                    const DracoGeometry& decoded) {
     builder_.require_extension(kDraco);
     count(decoded.indices.size() / 3, decoded.point_count);
+    written_.collapsed_face_count += count_collapsed(decoded_surface(decoded));
     PrimitiveGeometry geometry;
     geometry.attributes["POSITION"] = builder_.add("accessors", position_accessor(decoded.attributes[0]));
     Json ids = {{"POSITION", encoded.position_id}};

@@ -3,6 +3,8 @@
 
 #include <lodestone/io/file.h>
 #include <lodestone/io/scene.h>
+#include <lodestone/io/stream_format.h>
+#include <lodestone/lod/cursor.h>
 
 #include "gltf_flatten.h"
 #include "gltf_scene.h"
@@ -58,6 +60,17 @@ Result<std::vector<std::byte>> read_stream(const GltfDocument& document, std::si
   return std::vector<std::byte>(view.bytes.begin(), view.bytes.end());
 }
 
+/// Reads a mesh's stream. What a grid left no area of the levels, the stream still has.
+Result<void> add_stream(const GltfDocument& document, std::size_t number, SceneMesh& mesh) {
+  LODESTONE_TRY(mesh.stream, read_stream(document, number));
+  if (mesh.stream.empty() || mesh.mesh.face_count() > 0) return {};
+  LODESTONE_TRY(const ProgressiveMesh whole, decode_stream(mesh.stream));
+  Cursor cursor(whole);
+  cursor.seek(static_cast<Index>(whole.record_count()));
+  mesh.mesh = extract_level(whole, cursor);
+  return {};
+}
+
 const char* why_empty(const GltfDocument& document) {
   if (document.count("meshes") == 0) return "the file has no meshes";
   if (document.count("nodes") == 0) return "the file has no nodes to show its meshes";
@@ -69,6 +82,7 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
   for (const auto& [number, nodes] : nodes_of) {
     LODESTONE_TRY(auto joined, join_primitives(scene.document, number));
     if (!joined) continue;
+    if (with_streams) LODESTONE_CHECK(add_stream(scene.document, number, joined->mesh));
     if (joined->mesh.mesh.face_count() == 0) {
       scene.dropped.push_back(joined->mesh.assembly);
       continue;
@@ -77,9 +91,6 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
     for (const std::string& name : joined->left_out)
       scene.notes.push_back(
           text("mesh ", number, ": attribute ", name, " is left out: glTF vertices have no such type"));
-    if (with_streams) {
-      LODESTONE_TRY(joined->mesh.stream, read_stream(scene.document, number));
-    }
     scene.meshes.push_back(std::move(joined->mesh));
     scene.sources.push_back(std::move(joined->source));
   }

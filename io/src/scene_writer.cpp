@@ -41,7 +41,7 @@ struct BitsOption {
 
 Result<void> check_options(const AssetOptions& options) {
   if (!options.draco) return {};
-  for (const BitsOption& bits : {BitsOption{"draco_position_bits", options.draco_position_bits, 1},
+  for (const BitsOption& bits : {BitsOption{"draco_position_bits", options.draco_position_bits.value_or(1), 1},
                                  BitsOption{"draco_normal_bits", options.draco_normal_bits, kMinNormalBits},
                                  BitsOption{"draco_texcoord_bits", options.draco_texcoord_bits, 1},
                                  BitsOption{"draco_generic_bits", options.draco_generic_bits, 1}})
@@ -101,6 +101,7 @@ class SceneWriter {
       LODESTONE_CHECK(copy_kept_views(impl_.document, plan_, builder_));
       embed_images(impl_.images, builder_);
     }
+    note_collapsed();
     if (options_.measure) measure_levels();
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_finest(mesh);
     if (with_streams_)
@@ -128,6 +129,7 @@ class SceneWriter {
     builder_.document()["asset"]["generator"] = kGenerator;
     drop_replaced_extensions(impl_, builder_.document());
     layout_.levels.resize(range_.count);
+    collapsed_.resize(range_.count);
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
       geometry_.emplace_back();
       for (std::size_t level = 0; level < range_.count; ++level) {
@@ -136,9 +138,12 @@ class SceneWriter {
       }
     }
     LODESTONE_TRY(grids_, fit_grids(scene_, geometry_, options_));
-    for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh)
-      layout_.quantisation_error = std::max(
-          layout_.quantisation_error, std::sqrt(3.0) / 2 * grids_[mesh].position.step() * scene_.meshes()[mesh].scale);
+    for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh) {
+      const QuantizationGrid& grid = grids_[mesh].position;
+      layout_.quantisation_error =
+          std::max(layout_.quantisation_error, grid.point_error() * scene_.meshes()[mesh].scale);
+      layout_.position_bits = std::max(layout_.position_bits, grid.bits);
+    }
     return {};
   }
 
@@ -160,6 +165,7 @@ class SceneWriter {
         for (const std::string& note : written.notes) add_note(note);
       }
       layout.geometry_bytes += written.byte_count;
+      collapsed_[level] += written.collapsed_face_count * scene_.meshes()[mesh].instance_count;
       layout.face_count += written.face_count * scene_.meshes()[mesh].instance_count;
       layout.vertex_count += written.vertex_count * scene_.meshes()[mesh].instance_count;
     }
@@ -172,6 +178,17 @@ class SceneWriter {
   void add_note(const std::string& note) {
     std::vector<std::string>& notes = layout_.notes;
     if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  }
+
+  void note_collapsed() {
+    std::string counts;
+    for (std::size_t level = 0; level < range_.count; ++level)
+      if (collapsed_[level] > 0)
+        counts += text(counts.empty() ? "" : ", ", collapsed_[level], " of ", layout_.levels[level].face_count,
+                       " in level ", range_.first + level);
+    if (counts.empty()) return;
+    add_note(text("faces collapse on Draco's grid, which moves vertices by up to ", layout_.quantisation_error, ": ",
+                  counts));
   }
 
   void measure_levels() {
@@ -333,6 +350,7 @@ class SceneWriter {
   std::vector<Json> originals_;                    // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
   AssetLayout layout_;
+  std::vector<std::uint64_t> collapsed_;  // faces of each level, all instances counted
 };
 
 }  // namespace

@@ -22,7 +22,15 @@ namespace {
 // How many faces are looked at without coming nearer before a search ends.
 constexpr int kPatience = 48;
 
-bool is_skinning(const Attribute& a) { return a.name.starts_with("JOINTS_") || a.name.starts_with("WEIGHTS_"); }
+/// What stays with its vertex: skinning, and numbers of things, between which there is nothing.
+bool stays(const Attribute& a) {
+  if (a.name.starts_with("JOINTS_") || a.name.starts_with("WEIGHTS_")) return true;
+  for (const char* known : {"NORMAL", "TANGENT", "TEXCOORD_", "COLOR_", "TARGET_"})
+    if (a.name.starts_with(known)) return false;
+  if (a.type != ComponentType::Float32) return !a.normalized;
+  const std::vector<float> values = attribute_values(a);
+  return std::all_of(values.begin(), values.end(), [](float value) { return value == std::floor(value); });
+}
 
 /// A place on the original: a face and the weights of its corners.
 struct SurfacePlace {
@@ -204,7 +212,7 @@ void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
   const WedgeFinder finder(original);
   std::vector<std::vector<float>> values;
   for (const Attribute& a : original.attributes)
-    values.push_back(is_skinning(a) ? std::vector<float>() : finite_values(a));
+    values.push_back(stays(a) ? std::vector<float>() : finite_values(a));
   for (Index w = 0; w < level.wedge_count(); ++w) {
     const Index v = level.wedge_vertex[w];
     if (level.positions[v] == before.positions[v]) continue;
@@ -212,7 +220,7 @@ void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
     if (source == kNoIndex) continue;
     const SurfacePlace place = surface.nearest_from(source, Vec3(level.positions[v]));
     for (std::size_t i = 0; i < level.attributes.size() && place.face != kNoIndex; ++i)
-      if (!is_skinning(level.attributes[i])) blend(original, values[i], place, level.attributes[i], w);
+      if (!values[i].empty()) blend(original, values[i], place, level.attributes[i], w);
   }
   const std::vector<std::vector<int>> signs = orientations(before, level);
   while (put_back_turned(before, signs, level)) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,10 +32,14 @@ struct PositionGrid {
 
 struct AssetOptions {
   bool draco = true;
-  int draco_position_bits = 14;  ///< 1 to 30, one grid for all levels, and all meshes of a scale
+  /// 1 to 30, one grid for all levels, and all meshes of a scale. Unset: 14, or what the finest parts of the shape and
+  /// `draco_position_error` need; where 23 do not do, positions stay the floats they are.
+  std::optional<int> draco_position_bits;
+  double draco_position_error = std::numeric_limits<double>::infinity();  ///< the farthest a vertex may move, world units
   std::optional<PositionGrid> draco_position_grid;  ///< in place of a grid of so many bits, fitted to the meshes
   int draco_normal_bits = 10;
-  int draco_texcoord_bits = 12;
+  int draco_texcoord_bits = 12;  ///< of a texture's width: coordinates beyond it get more
+  /// Of tangents' range, of colours' and weights' unit. All other attributes are data, which Draco keeps exactly.
   int draco_generic_bits = 10;
   int draco_compression_level = 7;  ///< 0 to 10
   /// Called when all geometry is encoded, with each mesh's levels, finest first, as clients will decode them: sets
@@ -53,6 +58,7 @@ struct AssetLayout {
   };
   std::vector<Level> levels;
   double quantisation_error = 0;  ///< the farthest Draco moves a vertex, world units; 0 without Draco
+  int position_bits = 0;          ///< of the finest grid; 0 where positions are exact
   std::uint64_t stream_bytes = 0;
   std::uint64_t total_bytes = 0;
   std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each

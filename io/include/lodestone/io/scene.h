@@ -75,6 +75,10 @@ struct LeveledMesh {
   std::vector<std::byte> stream;  ///< the removal stream; empty for none
 };
 
+/// Returns the farthest that Draco will move a vertex of each mesh, in mesh units, where its levels lie in the box of
+/// the mesh; 0 without Draco.
+std::vector<double> quantisation_errors(const Scene& scene, const AssetOptions& options);
+
 /// Encodes a scene as a multi-LOD .glb: everything in the document as it was, and levels by MSFT_lod below each node
 /// that shows one of the meshes. The binary chunk holds the coarsest levels, what the document keeps, the finer levels
 /// one after the other, and the streams (extension LODESTONE_removal_stream) last. Deterministic.
