@@ -1,6 +1,9 @@
 #include <lodestone/io/asset.h>
 
+#include <array>
+#include <cmath>
 #include <cstring>
+#include <map>
 #include <string>
 
 #include <lodestone/io/file.h>
@@ -9,6 +12,7 @@
 
 #include "support/data.h"
 #include "support/mesh_properties.h"
+#include "support/random.h"
 
 namespace lodestone::test {
 namespace {
@@ -62,14 +66,28 @@ std::string json_of(const EncodedAsset& asset) {
 }
 
 /// The largest distance of a vertex to the vertex of the other mesh nearest to it.
-double farthest_vertex(const Mesh& a, const Mesh& b) {
+double farthest_vertex(const Mesh& a, const Mesh& b, double beyond = 1e9) {
   double farthest = 0;
   for (const Vec3f& p : a.positions) {
-    double nearest = 1e9;
+    double nearest = beyond;
     for (const Vec3f& q : b.positions) nearest = std::min(nearest, length(Vec3(p) - Vec3(q)));
     farthest = std::max(farthest, nearest);
   }
   return farthest;
+}
+
+/// The values of a mesh's one attribute, by where they are.
+std::map<std::array<float, 3>, std::vector<float>> values_at_places(const Mesh& mesh) {
+  REQUIRE(mesh.attributes.size() == 1);
+  const std::vector<float> values = attribute_values(mesh.attributes[0]);
+  const std::size_t width = mesh.attributes[0].component_count;
+  std::map<std::array<float, 3>, std::vector<float>> by_place;
+  for (std::size_t w = 0; w < mesh.wedge_count(); ++w) {
+    const Vec3f& p = mesh.positions[mesh.wedge_vertex[w]];
+    by_place[{p.x, p.y, p.z}] = {values.begin() + static_cast<std::ptrdiff_t>(w * width),
+                                 values.begin() + static_cast<std::ptrdiff_t>((w + 1) * width)};
+  }
+  return by_place;
 }
 
 }  // namespace
@@ -134,6 +152,124 @@ TEST_CASE("attributes and materials survive, plain exactly, draco in number") {
             std::set<Index>(levels[0].mesh.face_material.begin(), levels[0].mesh.face_material.end()).size());
     }
   }
+}
+
+TEST_CASE("draco holds shapes of any size") {
+  for (const double size : {1e-30, 1e-9, 1e-6, 1e-3, 1e4, 1e9, 1e30}) {
+    TriangleSoup soup = seam_sphere(8, 6);
+    for (Vec3f& p : soup.positions)
+      p = {p.x * static_cast<float>(size), p.y * static_cast<float>(size), p.z * static_cast<float>(size)};
+    std::vector<AssetLevel> levels(1);
+    levels[0].mesh = mesh_of(soup);
+    CAPTURE(size);
+    const EncodedAsset encoding = encoded(levels, {});
+    const Asset asset = decoded(encoding);
+    CHECK(encoding.layout.notes.empty());
+    CHECK(asset.levels[0].draco);
+    CHECK(asset.levels[0].mesh.face_count() == levels[0].mesh.face_count());
+    CHECK(farthest_vertex(levels[0].mesh, asset.levels[0].mesh, 1e9 * size) <= 1.001 * encoding.layout.quantisation_error);
+    CHECK(encoding.layout.quantisation_error < 1e-4 * 2 * size);
+  }
+}
+
+TEST_CASE("draco keeps thin, long and small shapes from collapsing, and says what collapses where bits are given") {
+  const auto stretched = [](TriangleSoup soup, double y, double z) {
+    for (Vec3f& p : soup.positions) p = {p.x, p.y * static_cast<float>(y), p.z * static_cast<float>(z)};
+    return soup;
+  };
+  const auto beside_small = [](double size) {
+    TriangleSoup soup = icosphere(2, 0, 1);
+    const TriangleSoup small = icosphere(1, 0, 1);
+    const auto first = static_cast<Index>(soup.positions.size());
+    for (const Vec3f& p : small.positions)
+      soup.positions.push_back({3 + p.x * static_cast<float>(size), p.y * static_cast<float>(size), p.z * static_cast<float>(size)});
+    for (const Index i : small.indices) soup.indices.push_back(first + i);
+    return soup;
+  };
+  for (const TriangleSoup& soup : {stretched(grid(5, 0, 1), 1e-5, 1), stretched(grid(5, 0, 1), 3e-7, 1),
+                                   stretched(icosphere(2, 0, 1), 1e-5, 1e-5), stretched(cylinder(16, 40), 2e-5, 2e-5),
+                                   beside_small(1e-4), beside_small(1e-5)}) {
+    std::vector<AssetLevel> levels(1);
+    levels[0].mesh = mesh_of(soup);
+    const EncodedAsset encoding = encoded(levels, {});
+    CHECK(encoding.layout.notes.empty());
+    CHECK(encoding.layout.quantisation_error < 3e-5);
+    CHECK(decoded(encoding).levels[0].mesh.face_count() == levels[0].mesh.face_count());
+    AssetOptions coarse;
+    coarse.draco_position_bits = 10;
+    const EncodedAsset collapsed = encoded(levels, coarse);
+    REQUIRE(collapsed.layout.notes.size() == 1);
+    CHECK_THAT(collapsed.layout.notes[0], contains("faces collapse on Draco's grid"));
+    CHECK(collapsed.layout.levels[0].face_count == levels[0].mesh.face_count());
+    CHECK(decoded(collapsed).levels[0].mesh.face_count() < levels[0].mesh.face_count());
+  }
+}
+
+TEST_CASE("draco moves no vertex farther than the options allow") {
+  std::vector<AssetLevel> levels(1);
+  levels[0].mesh = mesh_of(seam_sphere(16, 12));
+  for (const double most : {1e-2, 1e-5, 1e-7, 1e-9, 0.0}) {
+    AssetOptions options;
+    options.draco_position_error = most;
+    const EncodedAsset encoding = encoded(levels, options);
+    CHECK(encoding.layout.quantisation_error <= most);
+    CHECK(decoded(encoding).levels[0].draco);
+    CHECK(farthest_vertex(levels[0].mesh, decoded(encoding).levels[0].mesh) <= most);
+  }
+}
+
+TEST_CASE("draco keeps whatever is data exactly, and texture coordinates by the texture's width") {
+  Random random(5);
+  const Mesh bare = mesh_of(grid(9, 0.1, 1));
+  const auto with_floats = [&](const std::string& name, std::uint8_t width, auto value) {
+    std::vector<AssetLevel> levels(1);
+    levels[0].mesh = bare;
+    std::vector<float> values;
+    for (std::size_t i = 0; i < width * bare.wedge_count(); ++i) values.push_back(static_cast<float>(value(i)));
+    const auto bytes = std::as_bytes(std::span(values));
+    levels[0].mesh.attributes = {{name, ComponentType::Float32, width, false, {bytes.begin(), bytes.end()}}};
+    return levels;
+  };
+  AssetOptions options;
+  options.draco_position_error = 0;  // so that places tell which value is which
+  const auto farthest_value = [&](const std::vector<AssetLevel>& levels) {
+    const EncodedAsset encoding = encoded(levels, options);
+    CHECK(encoding.layout.notes.empty());
+    const Mesh mesh = decoded(encoding).levels[0].mesh;
+    CHECK(mesh.face_count() == bare.face_count());
+    const auto found = values_at_places(mesh), given = values_at_places(levels[0].mesh);
+    REQUIRE(found.size() == given.size());
+    double farthest = 0;
+    for (const auto& [place, value] : given)
+      for (std::size_t i = 0; i < value.size(); ++i)
+        farthest = std::max(farthest, std::abs(double{value[i]} - double{found.at(place).at(i)}));
+    return farthest;
+  };
+  const auto anything = [&](double scale) { return [&random, scale](std::size_t) { return scale * (random.unit() - 0.5); }; };
+  const auto whole = [&](double scale) { return [&random, scale](std::size_t) { return std::floor(scale * random.unit()); }; };
+  for (const double scale : {2.0, 1000.0, 70000.0, 8e6, 1.6e7, 1e9})
+    CHECK(farthest_value(with_floats("_FEATURE_ID_0", 1, whole(scale))) == 0);
+  CHECK(farthest_value(with_floats("_BATCHID", 1, [](std::size_t i) { return i == 7 ? -1.0 : 5e6 + double(i); })) == 0);
+  CHECK(farthest_value(with_floats("_TEMPERATURE", 3, anything(40))) == 0);
+  CHECK(farthest_value(with_floats("_SENTINEL", 1, [](std::size_t i) { return i % 5 == 0 ? -9999 : 0.1 * double(i); })) == 0);
+  CHECK(farthest_value(with_floats("TEXCOORD_0", 2, [](std::size_t i) { return double(i % 65) / 64; })) == 0);
+  for (const double range : {0.3, 1.0, 10.0, 1000.0, 1e5, 1e30})
+    CHECK(farthest_value(with_floats("TEXCOORD_0", 2, [&](std::size_t i) { return i == 9 ? range : random.unit(); })) <=
+          1.0 / 4095);
+  CHECK(farthest_value(with_floats("COLOR_0", 3, [&](std::size_t i) { return i == 9 ? 200.0 : random.unit(); })) <= 1.0 / 1023);
+}
+
+TEST_CASE("what draco cannot predict it encodes in another way") {
+  // Texture coordinates are predicted from positions by products that so many bits are too many for.
+  std::vector<AssetLevel> levels(1);
+  levels[0].mesh = mesh_of(seam_sphere(12, 9));
+  AssetOptions options;
+  options.draco_position_bits = options.draco_texcoord_bits = 30;
+  const EncodedAsset encoding = encoded(levels, options);
+  CHECK(encoding.layout.notes.empty());
+  CHECK(decoded(encoding).levels[0].draco);
+  CHECK(decoded(encoding).levels[0].mesh.face_count() == levels[0].mesh.face_count());
+  CHECK(farthest_vertex(levels[0].mesh, decoded(encoding).levels[0].mesh) < 1e-5);
 }
 
 TEST_CASE("integer attributes pass draco exactly") {

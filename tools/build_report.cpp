@@ -1,5 +1,6 @@
 #include "build_report.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "process_memory.h"
@@ -91,7 +92,7 @@ std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& le
           std::to_string(level.face_count),
           std::to_string(level.vertex_count),
           percent_text(level.deviation.maximum(), diagonal),
-          percent_text(level.deviation.forward.mean, diagonal),
+          percent_text(std::max(level.deviation.forward.mean, level.deviation.backward.mean), diagonal),
           std::to_string(level.bytes),
           level.stopped_by};
 }

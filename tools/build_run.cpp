@@ -137,7 +137,7 @@ class BuildRun {
   Result<std::vector<EncodedAsset>> encode();
   void measure_levels(std::span<std::vector<AssetLevel>> meshes, std::size_t first);
   void measure_mesh_level(std::size_t mesh, std::size_t number, const Mesh& level);
-  void report_deviation(std::size_t number);
+  void report_measured(std::size_t number);
   Result<void> write();
   Result<std::string> page() const;
   std::vector<ScenePart> parts() const;
@@ -422,7 +422,7 @@ void BuildRun::measure_levels(std::span<std::vector<AssetLevel>> meshes, std::si
       if (options_.html) decoded_[mesh].levels.push_back(meshes[mesh][level]);
     }
   }
-  for (std::size_t level = 0; level < count; ++level) report_deviation(first + level);
+  for (std::size_t level = 0; level < count; ++level) report_measured(first + level);
   report_.timings_ms.levels += stopwatch_.lap_ms();
   progress_.start("writing");
 }
@@ -432,16 +432,20 @@ void BuildRun::measure_mesh_level(std::size_t mesh, std::size_t number, const Me
   if (options_.no_draco && is_whole(mesh, number)) return;
   const Mesh& whole = scene_->meshes()[mesh].mesh;
   BuildReport::MeshPart::Level& reported = report_.meshes[mesh].levels[number];
+  reported.vertex_count = level.vertex_count();
   reported.deviation = measure_deviation(whole, level, level_measure());
   reported.attributes = measure_attributes(whole, level);
 }
 
-void BuildRun::report_deviation(std::size_t number) {
+void BuildRun::report_measured(std::size_t number) {
   DeviationTotal total;
+  std::size_t vertex_count = 0;
   for (std::size_t i = 0; i < report_.meshes.size(); ++i) {
     const SceneMesh& mesh = scene_->meshes()[i];
     total.add(report_.meshes[i].levels[number].deviation, mesh.scale, mesh.area);
+    vertex_count += report_.meshes[i].levels[number].vertex_count * mesh.instance_count;
   }
+  report_.levels[number].vertex_count = vertex_count;
   report_.levels[number].deviation = total.result();
 }
 

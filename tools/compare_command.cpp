@@ -30,7 +30,7 @@ constexpr std::size_t kMostSamples = 1'000'000'000;
 struct Surface {
   std::string path;
   Mesh mesh;
-  std::uintmax_t bytes = 0;  ///< of the file
+  std::uint64_t bytes = 0;  ///< of the file and what it needs beside it
 };
 
 Result<Surface> read_surface(const std::filesystem::path& path) {
@@ -39,9 +39,7 @@ Result<Surface> read_surface(const std::filesystem::path& path) {
   if (file->mesh.face_count() == 0) {
     return fail(ErrorCode::Malformed, quoted(path) + ": no triangles to compare");
   }
-  std::error_code unknown;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
-  return Surface{path.string(), std::move(file->mesh), unknown ? 0 : bytes};
+  return Surface{path.string(), std::move(file->mesh), loaded_bytes(path).value_or(0)};
 }
 
 Json surface_json(const Surface& surface) {

@@ -1,8 +1,10 @@
 #include "inspect_command.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <string>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -10,10 +12,12 @@
 #include <lodestone/core/connectivity.h>
 #include <lodestone/io/asset.h>
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
 
 #include "json_text.h"
 #include "messages.h"
+#include "scene_totals.h"
 #include "text_table.h"
 
 namespace lodestone::tool {
@@ -41,23 +45,12 @@ bool is_glb(const std::filesystem::path& path) {
   return std::string_view(magic, sizeof magic) == "glTF";
 }
 
-Result<KindCounts> count_kinds(const Mesh& mesh) {
-  const Result<Connectivity> connectivity = Connectivity::build(mesh);
-  if (!connectivity) return tl::unexpected(connectivity.error());
-  KindCounts counts{};
-  for (Index vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
-    const VertexKind kind = connectivity->has_vertex(vertex) ? connectivity->kind(vertex) : VertexKind::Isolated;
-    for (std::size_t i = 0; i < kKindNames.size(); ++i) counts[i] += kKindNames[i].kind == kind ? 1 : 0;
-  }
-  return counts;
-}
-
 // A multi-LOD file: its levels, its stream, and what is left.
 
 Json level_json(const Asset::Level& level) {
   return {
       {"faces", level.face_count},
-      {"vertices", level.mesh.vertex_count()},
+      {"vertices", level.vertex_count},
       {"bytes", level.byte_length},
       {"draco", level.draco},
       {"deviation", {{"max", level.maximum_deviation}, {"mean", level.mean_deviation}, {"rms", level.rms_deviation}}},
@@ -123,6 +116,7 @@ Json asset_json(const std::string& path, const Asset& asset, std::span<const Lis
           {"kind", "asset"},
           {"bytes", asset.total_bytes},
           {"other_bytes", other_bytes(asset)},
+          {"diagonal", asset.box.diagonal()},
           {"levels", levels},
           {"stream", all_streams_json(asset, streams)},
           {"streams", by_mesh}};
@@ -130,12 +124,13 @@ Json asset_json(const std::string& path, const Asset& asset, std::span<const Lis
 
 void print_levels(const Asset& asset) {
   TextTable table({"level", "faces", "vertices", "max", "mean", "rms", "epsilon", "bytes", "coding"});
+  const double diagonal = asset.box.diagonal();
   for (std::size_t i = 0; i < asset.levels.size(); ++i) {
     const Asset::Level& level = asset.levels[i];
-    table.add({text_of(i), text_of(level.face_count), text_of(level.mesh.vertex_count()),
-               number_text(level.maximum_deviation), number_text(level.mean_deviation),
-               number_text(level.rms_deviation), number_text(level.curvature_error), text_of(level.byte_length),
-               level.draco ? "draco" : "plain"});
+    table.add({text_of(i), text_of(level.face_count), text_of(level.vertex_count),
+               percent_text(level.maximum_deviation, diagonal), percent_text(level.mean_deviation, diagonal),
+               percent_text(level.rms_deviation, diagonal), number_text(level.curvature_error),
+               text_of(level.byte_length), level.draco ? "draco" : "plain"});
   }
   table.print();
 }
@@ -156,8 +151,9 @@ void print_stream(const ListedStream& stream) {
 }
 
 void print_asset(const std::string& path, const Asset& asset, std::span<const ListedStream> streams) {
-  std::printf("%s: %llu bytes, %llu of them neither level nor stream; errors in the file's units\n", path.c_str(),
-              static_cast<unsigned long long>(asset.total_bytes), static_cast<unsigned long long>(other_bytes(asset)));
+  std::printf("%s: %llu bytes, %llu of them neither level nor stream; diagonal %s\n", path.c_str(),
+              static_cast<unsigned long long>(asset.total_bytes), static_cast<unsigned long long>(other_bytes(asset)),
+              number_text(asset.box.diagonal()).c_str());
   print_levels(asset);
   for (const ListedStream& stream : streams) print_stream(stream);
 }
@@ -177,25 +173,82 @@ Result<Outcome> inspect_asset(const std::string& path, const Asset& asset, bool 
   return Outcome::Done;
 }
 
-// Any other mesh file.
+// Any other file: what build takes it for, every instance counted.
 
-Json mesh_json(const std::string& path, const MeshFile& file, const KindCounts& kinds) {
-  Json attributes = Json::array();
-  for (const Attribute& attribute : file.mesh.attributes) attributes.push_back(attribute.name);
+struct Inventory {
+  std::uint64_t bytes = 0;  ///< with the buffers and images beside the file
+  std::size_t face_count = 0, vertex_count = 0, wedge_count = 0;
+  KindCounts kinds{};
+  std::vector<std::string> attributes;
+  double area = 0;
+  Box box;
+  AssemblyReport assembly;
+  std::vector<std::string> notes;
+};
+
+Result<void> count_kinds(const SceneMesh& mesh, KindCounts& counts) {
+  const Result<Connectivity> connectivity = Connectivity::build(mesh.mesh);
+  if (!connectivity) return tl::unexpected(connectivity.error());
+  for (Index vertex = 0; vertex < mesh.mesh.vertex_count(); ++vertex) {
+    const VertexKind kind = connectivity->has_vertex(vertex) ? connectivity->kind(vertex) : VertexKind::Isolated;
+    for (std::size_t i = 0; i < kKindNames.size(); ++i)
+      if (kKindNames[i].kind == kind) counts[i] += mesh.instance_count;
+  }
+  return {};
+}
+
+Result<void> add_mesh(const SceneMesh& mesh, Inventory& inventory) {
+  inventory.face_count += mesh.mesh.face_count() * mesh.instance_count;
+  inventory.vertex_count += mesh.mesh.vertex_count() * mesh.instance_count;
+  inventory.wedge_count += mesh.mesh.wedge_count() * mesh.instance_count;
+  inventory.area += mesh.area;
+  inventory.assembly = inventory.assembly + mesh.assembly;
+  std::vector<std::string>& names = inventory.attributes;
+  for (const Attribute& attribute : mesh.mesh.attributes)
+    if (std::find(names.begin(), names.end(), attribute.name) == names.end()) names.push_back(attribute.name);
+  return count_kinds(mesh, inventory.kinds);
+}
+
+/// Reads what build would; of files that it refuses, such as those with levels of other programs, the finest level.
+Result<Scene> read_any_scene(const std::filesystem::path& path) {
+  Result<Scene> scene = Scene::read(path);
+  if (scene || scene.error().code != ErrorCode::Unsupported) return scene;
+  Result<MeshFile> file = read_mesh(path);
+  if (!file) return tl::unexpected(file.error());
+  return Scene::from_mesh(std::move(*file), path.stem().string());
+}
+
+Result<Inventory> take_inventory(const std::filesystem::path& path) {
+  const Result<Scene> scene = read_any_scene(path);
+  if (!scene) return tl::unexpected(scene.error());
+  const Result<std::uint64_t> bytes = loaded_bytes(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  Inventory inventory;
+  inventory.bytes = *bytes;
+  inventory.box = scene->box();
+  inventory.notes = scene->notes();
+  for (const AssemblyReport& dropped : scene->dropped()) inventory.assembly = inventory.assembly + dropped;
+  for (const SceneMesh& mesh : scene->meshes())
+    if (Result<void> done = add_mesh(mesh, inventory); !done) return tl::unexpected(done.error());
+  return inventory;
+}
+
+Json inventory_json(const std::string& path, const Inventory& inventory) {
   Json kind_counts = Json::object();
-  for (std::size_t i = 0; i < kinds.size(); ++i) kind_counts[kKindNames[i].name] = kinds[i];
+  for (std::size_t i = 0; i < kKindNames.size(); ++i) kind_counts[kKindNames[i].name] = inventory.kinds[i];
   return {{"schema_version", kInspectSchemaVersion},
           {"path", path},
           {"kind", "mesh"},
-          {"faces", file.mesh.face_count()},
-          {"vertices", file.mesh.vertex_count()},
-          {"wedges", file.mesh.wedge_count()},
+          {"bytes", inventory.bytes},
+          {"faces", inventory.face_count},
+          {"vertices", inventory.vertex_count},
+          {"wedges", inventory.wedge_count},
           {"vertex_kinds", kind_counts},
-          {"attributes", attributes},
-          {"area", surface_area(file.mesh)},
-          {"bounding_box", box_json(bounding_box(file.mesh))},
-          {"assembly", assembly_json(file.assembly)},
-          {"notes", file.notes}};
+          {"attributes", inventory.attributes},
+          {"area", inventory.area},
+          {"bounding_box", box_json(inventory.box)},
+          {"assembly", assembly_json(inventory.assembly)},
+          {"notes", inventory.notes}};
 }
 
 void print_kinds(const KindCounts& kinds) {
@@ -207,35 +260,32 @@ void print_kinds(const KindCounts& kinds) {
   if (!line.empty()) std::printf("vertex kinds: %s\n", line.c_str());
 }
 
-void print_attributes(const std::vector<Attribute>& attributes) {
+void print_attributes(const std::vector<std::string>& names) {
   std::string line;
-  for (const Attribute& attribute : attributes) line += " " + attribute.name;
+  for (const std::string& name : names) line += " " + name;
   if (!line.empty()) std::printf("attributes:%s\n", line.c_str());
 }
 
-void print_mesh(const std::string& path, const MeshFile& file, const KindCounts& kinds) {
-  const Mesh& mesh = file.mesh;
-  const Box box = bounding_box(mesh);
-  std::printf("%s: %zu faces, %zu vertices, %zu wedges\n", path.c_str(), mesh.face_count(), mesh.vertex_count(),
-              mesh.wedge_count());
-  print_kinds(kinds);
-  print_attributes(mesh.attributes);
+void print_inventory(const std::string& path, const Inventory& inventory) {
+  const Box& box = inventory.box;
+  std::printf("%s: %zu faces, %zu vertices, %zu wedges, %llu bytes\n", path.c_str(), inventory.face_count,
+              inventory.vertex_count, inventory.wedge_count, static_cast<unsigned long long>(inventory.bytes));
+  print_kinds(inventory.kinds);
+  print_attributes(inventory.attributes);
   std::printf("bounds: (%g, %g, %g) to (%g, %g, %g), diagonal %g\n", box.low.x, box.low.y, box.low.z, box.high.x,
               box.high.y, box.high.z, box.diagonal());
-  std::printf("area: %g\n", surface_area(mesh));
-  for (const std::string& line : sentences(file.assembly)) std::printf("repaired: %s\n", line.c_str());
-  for (const std::string& line : file.notes) std::printf("note: %s\n", line.c_str());
+  std::printf("area: %g\n", inventory.area);
+  for (const std::string& line : sentences(inventory.assembly)) std::printf("repaired: %s\n", line.c_str());
+  for (const std::string& line : inventory.notes) std::printf("note: %s\n", line.c_str());
 }
 
 Result<Outcome> inspect_mesh(const std::filesystem::path& path, bool json) {
-  const Result<MeshFile> file = read_mesh(path);
-  if (!file) return tl::unexpected(file.error());
-  const Result<KindCounts> kinds = count_kinds(file->mesh);
-  if (!kinds) return tl::unexpected(kinds.error());
+  const Result<Inventory> inventory = take_inventory(path);
+  if (!inventory) return tl::unexpected(inventory.error());
   if (json) {
-    std::fputs(json_text(mesh_json(path.string(), *file, *kinds)).c_str(), stdout);
+    std::fputs(json_text(inventory_json(path.string(), *inventory)).c_str(), stdout);
   } else {
-    print_mesh(path.string(), *file, *kinds);
+    print_inventory(path.string(), *inventory);
   }
   return Outcome::Done;
 }

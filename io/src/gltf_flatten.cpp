@@ -10,6 +10,7 @@
 #include "bytes.h"
 #include "gltf_primitive.h"
 #include "gltf_scene.h"
+#include "gltf_skin.h"
 #include "text.h"
 #include "try.h"
 
@@ -78,16 +79,35 @@ CommonAttributes find_common_attributes(const Primitives& meshes, bool has_skins
   return common;
 }
 
-/// Turns the vectors of a NORMAL or TANGENT with their node.
-void turn(Attribute& attribute, std::size_t first_byte, const Transform& world) {
+/// Where the points of a primitive go: all with their node, or each with its joints.
+class Placement {
+ public:
+  Placement(const Primitive& primitive, const Transform& world, std::span<const Transform> joints)
+      : world_(world), joints_(joints), skinner_(primitive.attributes) {}
+
+  bool is_identity() const { return !is_skinned() && world_.is_identity(); }
+  bool mirrors() const { return !is_skinned() && world_.mirrors(); }
+  Transform at(std::size_t point) const { return is_skinned() ? skinner_.pose(point, joints_) : world_; }
+
+ private:
+  bool is_skinned() const { return !joints_.empty() && !skinner_.empty(); }
+
+  const Transform& world_;
+  std::span<const Transform> joints_;
+  Skinner skinner_;
+};
+
+/// Turns the vectors of a NORMAL or TANGENT with their points.
+void turn(Attribute& attribute, std::size_t first_byte, const Placement& placement) {
   const std::size_t stride = attribute.element_bytes();
   const bool tangent = attribute.name == "TANGENT";
   for (std::size_t at = first_byte; at < attribute.data.size(); at += stride) {
+    const Transform world = placement.at((at - first_byte) / stride);
     Vec3f vector;
     std::memcpy(&vector, attribute.data.data() + at, sizeof vector);
     vector = tangent ? world.direction(vector) : world.normal(vector);
     std::memcpy(attribute.data.data() + at, &vector, sizeof vector);
-    if (!tangent || attribute.component_count < 4 || !world.mirrors()) continue;
+    if (!tangent || attribute.component_count < 4 || !placement.mirrors()) continue;
     float handedness;  // Of the bitangent: a mirrored surface has its mirror image.
     std::memcpy(&handedness, attribute.data.data() + at + sizeof vector, sizeof handedness);
     handedness = -handedness;
@@ -95,24 +115,25 @@ void turn(Attribute& attribute, std::size_t first_byte, const Transform& world) 
   }
 }
 
-void append_attributes(std::vector<Attribute>& attributes, const Primitive& primitive, const Transform& world) {
+void append_attributes(std::vector<Attribute>& attributes, const Primitive& primitive, const Placement& placement) {
   for (Attribute& attribute : attributes) {
     const auto source = std::find_if(primitive.attributes.begin(), primitive.attributes.end(),
                                      [&](const Attribute& a) { return a.name == attribute.name; });
     const std::size_t first_byte = attribute.data.size();
     append_bytes(attribute.data, source->data);
     const bool turns = (attribute.name == "NORMAL" || attribute.name == "TANGENT") && attribute.component_count >= 3;
-    if (turns && !world.is_identity()) turn(attribute, first_byte, world);
+    if (turns && !placement.is_identity()) turn(attribute, first_byte, placement);
   }
 }
 
-Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, const Transform& world) {
+Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, const Placement& placement) {
   const std::size_t first = soup.positions.size();
   if (first + primitive.positions.size() > kMaxCorners || soup.indices.size() + primitive.indices.size() > kMaxCorners)
     return fail(ErrorCode::LimitExceeded, text("gltf: the scene has more than ", kMaxCorners, " corners"));
-  for (const Vec3f& p : primitive.positions) soup.positions.push_back(world.point(p));
-  append_attributes(soup.attributes, primitive, world);
-  const bool mirrored = world.mirrors();
+  for (std::size_t i = 0; i < primitive.positions.size(); ++i)
+    soup.positions.push_back(placement.at(i).point(primitive.positions[i]));
+  append_attributes(soup.attributes, primitive, placement);
+  const bool mirrored = placement.mirrors();
   for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
     const Index a = primitive.indices[i], b = primitive.indices[i + 1], c = primitive.indices[i + 2];
     for (const Index point : {a, mirrored ? c : b, mirrored ? b : c})
@@ -120,6 +141,21 @@ Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, co
     soup.face_material.push_back(primitive.material);
   }
   return {};
+}
+
+using Joints = std::map<std::size_t, std::vector<Transform>>;  // by skin
+
+Result<Joints> read_skins(const GltfDocument& document, std::span<const MeshInstance> instances) {
+  Joints joints;
+  std::vector<NodePlace> places;
+  for (const MeshInstance& instance : instances) {
+    if (instance.skin == kNoSkin || joints.contains(instance.skin)) continue;
+    if (places.empty()) {
+      LODESTONE_TRY(places, place_nodes(document));
+    }
+    LODESTONE_TRY(joints[instance.skin], read_joints(document, places, instance.skin));
+  }
+  return joints;
 }
 
 std::string join(const std::set<std::string>& names) {
@@ -137,7 +173,7 @@ std::vector<std::string> note_left_out(const GltfDocument& document, const Primi
   };
   note(omissions.points_and_lines, "primitive of points or lines", "primitives of points or lines");
   note(omissions.morph_targets, "morph target", "morph targets");
-  note(document.count("skins"), "skin", "skins", ", with joints and weights; skinned meshes stand as they are stored");
+  note(document.count("skins"), "skin", "skins", ", with joints and weights; skinned meshes stand in the pose of their nodes");
   note(document.count("animations"), "animation", "animations");
   note(document.count("textures"), "texture", "textures");
   note(document.count("materials"), "material", "materials", "; faces keep apart by material");
@@ -159,6 +195,7 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
     if (meshes.contains(instance.mesh)) continue;
     LODESTONE_TRY(meshes[instance.mesh], reader.read_mesh(instance.mesh));
   }
+  LODESTONE_TRY(Joints joints, read_skins(document, instances));
   CommonAttributes common = find_common_attributes(meshes, document.count("skins") > 0);
 
   SoupFile file;
@@ -166,7 +203,7 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
   for (const MeshInstance& instance : instances)
     for (const Primitive& primitive : meshes[instance.mesh]) {
       if (primitive.indices.empty()) continue;
-      LODESTONE_CHECK(append_primitive(file.soup, primitive, instance.world));
+      LODESTONE_CHECK(append_primitive(file.soup, primitive, {primitive, instance.world, joints[instance.skin]}));
     }
   auto& materials = file.soup.face_material;
   if (std::all_of(materials.begin(), materials.end(), [](Index m) { return m == 0; })) materials.clear();

@@ -161,8 +161,11 @@ class Walk {
     const Transform world = parent * local;
     if (find_member(*node, "mesh") != nullptr) {
       LODESTONE_TRY(const std::size_t mesh, size_member(*node, "mesh", where));
-      const bool skinned = find_member(*node, "skin") != nullptr;
-      instances_.push_back({index, mesh, skinned ? Transform{} : world});
+      std::size_t skin = kNoSkin;
+      if (find_member(*node, "skin") != nullptr) {
+        LODESTONE_TRY(skin, size_member(*node, "skin", where));
+      }
+      instances_.push_back({index, mesh, skin, skin == kNoSkin ? world : Transform{}});
     }
     const auto& children = graph_.children[index];
     for (auto child = children.rbegin(); child != children.rend(); ++child) stack_.push_back({*child, world});
@@ -191,7 +194,7 @@ Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document
   if (graph.parent.empty()) {
     std::vector<MeshInstance> instances;
     for (std::size_t mesh = 0; mesh < document.count("meshes"); ++mesh)
-      instances.push_back({kNoNode, mesh, Transform{}});
+      instances.push_back({kNoNode, mesh, kNoSkin, Transform{}});
     return instances;
   }
   LODESTONE_TRY(const auto roots, find_roots(document, graph));

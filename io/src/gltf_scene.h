@@ -10,10 +10,13 @@
 
 namespace lodestone::detail {
 
+inline constexpr std::size_t kNoSkin = static_cast<std::size_t>(-1);
+
 /// A mesh of the document at a place in the world.
 struct MeshInstance {
   std::size_t node = 0;  ///< the node that holds it, or kNoNode
   std::size_t mesh = 0;
+  std::size_t skin = kNoSkin;  ///< that places its vertices in place of `world`
   Transform world;
 };
 
@@ -24,7 +27,7 @@ Result<std::size_t> level_count(const GltfDocument& document);
 
 /// Lists the meshes of the default scene (else of the first; else of all root nodes; else, without any node, all
 /// meshes), in the order of a walk from the roots. A node with MSFT_lod is replaced by that of its level `level`, 0
-/// being the finest, or by its last where it has fewer. A skinned mesh stays where its vertices say: glTF ignores the
+/// being the finest, or by its last where it has fewer. A skinned mesh stands where its joints say: glTF ignores the
 /// transform of its node.
 /// Errors: Malformed for nodes that do not exist, have two parents or are their own ancestors.
 Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document, std::size_t level);

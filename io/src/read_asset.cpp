@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <set>
 
 #include <lodestone/core/assemble.h>
@@ -10,6 +12,7 @@
 #include "gltf_flatten.h"
 #include "gltf_primitive.h"
 #include "gltf_scene.h"
+#include "scene_mesh.h"
 #include "stream_extension.h"
 #include "text.h"
 #include "try.h"
@@ -96,9 +99,30 @@ Result<void> read_numbers(const GltfDocument& document, std::size_t index, const
   return {};
 }
 
-Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, const Chains& chains) {
+Box box_of(const TriangleSoup& soup) {
+  Mesh points{soup.positions, {}, soup.indices, {}, {}};
+  points.wedge_vertex.resize(points.positions.size());
+  std::iota(points.wedge_vertex.begin(), points.wedge_vertex.end(), Index{0});
+  return bounding_box(points);
+}
+
+Result<std::uint64_t> count_vertices(const GltfDocument& document, std::span<const MeshInstance> instances) {
+  std::map<std::size_t, std::uint64_t> of_mesh;
+  std::uint64_t count = 0;
+  for (const MeshInstance& instance : instances) {
+    if (!of_mesh.contains(instance.mesh)) {
+      LODESTONE_TRY(const auto joined, join_primitives(document, instance.mesh));
+      of_mesh[instance.mesh] = joined ? joined->mesh.mesh.vertex_count() : 0;
+    }
+    count += of_mesh[instance.mesh];
+  }
+  return count;
+}
+
+Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, const Chains& chains, Box& box) {
   Asset::Level level;
   LODESTONE_TRY(const SoupFile file, flatten_scene(document, index));
+  if (index == 0) box = box_of(file.soup);
   level.face_count = file.soup.indices.size() / 3;
   LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup));
   level.mesh = std::move(assembled.mesh);
@@ -106,6 +130,7 @@ Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index,
   LODESTONE_TRY(const auto instances, collect_instances(document, index));
   std::set<std::size_t> meshes;
   for (const MeshInstance& instance : instances) meshes.insert(instance.mesh);
+  LODESTONE_TRY(level.vertex_count, count_vertices(document, instances));
   for (const std::size_t mesh : meshes) level.draco |= uses_draco(document, mesh);
   LODESTONE_TRY(level.byte_length, stored_bytes(document, meshes));
   LODESTONE_CHECK(read_numbers(document, index, chains, level));
@@ -138,7 +163,7 @@ Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
   LODESTONE_TRY(const auto chains, lod_chains(document));
   Asset asset;
   for (std::size_t i = 0; i < count; ++i) {
-    LODESTONE_TRY(Asset::Level level, read_level(document, i, chains));
+    LODESTONE_TRY(Asset::Level level, read_level(document, i, chains, asset.box));
     asset.levels.push_back(std::move(level));
   }
   LODESTONE_TRY(asset.streams, read_streams(document));

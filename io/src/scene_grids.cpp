@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include "text.h"
 #include "try.h"
@@ -198,12 +197,15 @@ class SharedGrid {
  public:
   explicit SharedGrid(const AssetOptions& options) : options_(options) {}
 
-  /// Adds a level; the finest of a mesh says how fine the grid must be.
-  void add(const Mesh& mesh, double scale, bool finest) {
-    fitter_.add(as_floats(mesh.positions));
-    if (finest && !options_.draco_position_bits && !options_.draco_position_grid)
-      step_ = std::min({step_, step_for_shape(mesh), 2 / std::sqrt(3.0) * options_.draco_position_error / scale});
+  /// Adds a mesh, which says how fine the grid must be.
+  void add(const SceneMesh& mesh) {
+    if (options_.draco_position_bits || options_.draco_position_grid) return;
+    const double step = 2 / std::sqrt(3.0) * options_.draco_position_error / mesh.scale;
+    step_ = std::min({step_, step, step_for_shape(mesh.mesh)});
   }
+
+  /// Adds a level of a mesh, which must lie in the grid.
+  void add(const Mesh& level) { fitter_.add(as_floats(level.positions)); }
 
   QuantizationGrid grid() const {
     if (options_.draco_position_grid) return given_grid(*options_.draco_position_grid);
@@ -218,7 +220,7 @@ class SharedGrid {
   double step_ = HUGE_VAL;
 };
 
-/// Fits the grid of each of a scene's meshes over the levels that `visit(mesh, add)` calls `add` with, finest first.
+/// Fits the grid of each of a scene's meshes over the levels that `visit(mesh, add)` calls `add` with.
 template <class Visit>
 std::vector<QuantizationGrid> fit_positions(const Scene& scene, const AssetOptions& options, const Visit& visit) {
   std::vector<QuantizationGrid> grids(scene.meshes().size());
@@ -228,8 +230,8 @@ std::vector<QuantizationGrid> fit_positions(const Scene& scene, const AssetOptio
     SharedGrid shared(options);
     std::size_t end = first;
     for (; end < order.size() && scene.meshes()[order[end]].scale <= scale * (1 + kScaleTolerance); ++end) {
-      bool finest = true;
-      visit(order[end], [&](const Mesh& level) { shared.add(level, scale, std::exchange(finest, false)); });
+      shared.add(scene.meshes()[order[end]]);
+      visit(order[end], [&](const Mesh& level) { shared.add(level); });
     }
     for (; first < end; ++first) grids[order[first]] = shared.grid();
   }

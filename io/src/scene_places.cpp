@@ -7,6 +7,7 @@
 
 #include "bytes.h"
 #include "gltf_scene.h"
+#include "gltf_skin.h"
 #include "text.h"
 #include "transform.h"
 #include "try.h"
@@ -16,40 +17,6 @@ namespace {
 
 // Nodes may show one mesh any number of times, so that the work is not bounded by the file's size.
 constexpr std::size_t kMaxPlacedPoints = 300'000'000;
-
-constexpr std::size_t kMatrixComponents = 16, kJointsPerSet = 4;
-
-Result<std::vector<Transform>> read_inverse_binds(const GltfDocument& document, const Json& skin, std::size_t count,
-                                                  const std::string& where) {
-  std::vector<Transform> matrices(count);
-  if (find_member(skin, "inverseBindMatrices") == nullptr) return matrices;
-  LODESTONE_TRY(const std::size_t index, size_member(skin, "inverseBindMatrices", where));
-  LODESTONE_TRY(const AccessorData data, document.accessor(index));
-  if (data.component_count != kMatrixComponents || data.count < count)
-    return fail(ErrorCode::Malformed, text(where, ": inverseBindMatrices are not ", count, " matrices"));
-  const std::vector<float> values = to_floats(data);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t row = 0; row < 3; ++row)
-      for (std::size_t column = 0; column < 4; ++column)
-        matrices[i].rows[row][column] = values[kMatrixComponents * i + 4 * column + row];
-  return matrices;
-}
-
-/// Returns, for each joint, the map from the mesh's units to the world in the pose the nodes have.
-Result<std::vector<Transform>> read_joints(const GltfDocument& document, std::span<const NodePlace> places,
-                                           std::size_t index) {
-  const std::string where = text("skin ", index);
-  LODESTONE_TRY(const Json* const skin, document.element("skins", "skin", index));
-  LODESTONE_TRY(const auto joints, size_array_member(*skin, "joints", where));
-  LODESTONE_TRY(std::vector<Transform> matrices, read_inverse_binds(document, *skin, joints.size(), where));
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (joints[i] >= places.size())
-      return fail(ErrorCode::Malformed,
-                  text(where, ": node ", joints[i], " does not exist: the file has ", places.size()));
-    matrices[i] = places[joints[i]].world * matrices[i];
-  }
-  return matrices;
-}
 
 /// Reads one attribute of EXT_mesh_gpu_instancing; empty where it is absent.
 Result<std::vector<float>> read_instancing(const GltfDocument& document, const Json& attributes, const char* name,
@@ -83,44 +50,6 @@ Result<std::vector<Transform>> read_copies(const GltfDocument& document, const J
   return copies;
 }
 
-std::vector<float> floats_of(const Attribute& a) {
-  return to_floats({a.type, a.component_count, a.normalized, a.data.size() / a.element_bytes(), a.data});
-}
-
-/// Poses points by the joints and weights of all sets that there are.
-class Skinner {
- public:
-  explicit Skinner(const Mesh& mesh) {
-    for (const Attribute& joints : mesh.attributes) {
-      const bool unsigned_type = joints.type == ComponentType::UInt8 || joints.type == ComponentType::UInt16;
-      if (!joints.name.starts_with("JOINTS_") || joints.component_count != kJointsPerSet || !unsigned_type) continue;
-      const std::string partner = "WEIGHTS_" + joints.name.substr(7);
-      for (const Attribute& weights : mesh.attributes)
-        if (weights.name == partner && weights.component_count == kJointsPerSet)
-          sets_.push_back({floats_of(joints), floats_of(weights)});
-    }
-  }
-
-  bool empty() const { return sets_.empty(); }
-
-  /// Joints that do not exist have no say.
-  Vec3 pose(std::size_t wedge, const Vec3& p, std::span<const Transform> joints) const {
-    Vec3 sum;
-    for (const Set& set : sets_)
-      for (std::size_t k = kJointsPerSet * wedge; k < kJointsPerSet * (wedge + 1); ++k) {
-        const auto joint = static_cast<std::size_t>(set.joints[k]);
-        if (set.weights[k] != 0 && joint < joints.size()) sum += joints[joint].exact_point(p) * double{set.weights[k]};
-      }
-    return sum;
-  }
-
- private:
-  struct Set {
-    std::vector<float> joints, weights;
-  };
-  std::vector<Set> sets_;
-};
-
 void grow(Box& box, const Vec3& p) {
   box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
   box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
@@ -143,7 +72,7 @@ class InstanceMeasure {
   Result<void> add_mesh(std::size_t number) {
     SceneMesh& mesh = scene_.meshes[number];
     mesh.scale = 0;
-    const Skinner skinner(mesh.mesh);
+    const Skinner skinner(mesh.mesh.attributes);
     for (const std::size_t node : scene_.sources[number].nodes) LODESTONE_CHECK(add_node(mesh, skinner, node));
     // What is drawn as a point everywhere has no size in the world, but errors must not vanish by it.
     if (!(mesh.scale > 0) || !std::isfinite(mesh.scale)) mesh.scale = 1;
@@ -174,8 +103,9 @@ class InstanceMeasure {
   Result<void> add_skinned(SceneMesh& mesh, const Skinner& skinner, std::span<const Transform> joints) {
     mesh.skinned = true;
     for (const Transform& joint : joints) mesh.scale = std::max(mesh.scale, joint.stretch());
-    return add_points(
-        mesh, [&](std::size_t wedge, const Vec3& p) { return skinner.empty() ? p : skinner.pose(wedge, p, joints); });
+    return add_points(mesh, [&](std::size_t wedge, const Vec3& p) {
+      return skinner.empty() ? p : skinner.pose(wedge, joints).exact_point(p);
+    });
   }
 
   template <class Place>

@@ -78,6 +78,7 @@ struct Asset {
   struct Level {
     Mesh mesh;                      ///< decoded from Draco or plain accessors, assembled: clean and without doubles
     std::uint64_t face_count = 0;   ///< drawn, as stored
+    std::uint64_t vertex_count = 0; ///< drawn: of each mesh as `Scene` joins it
     std::uint64_t byte_length = 0;  ///< of its geometry, each mesh once
     double maximum_deviation = 0;   ///< from extras, world units: the largest of all meshes; 0 where absent
     double mean_deviation = 0;      ///< weighted by the area that each mesh covers in the world
@@ -91,6 +92,7 @@ struct Asset {
     std::vector<std::byte> bytes;
   };
   std::vector<Level> levels;    ///< finest first; one for an ordinary glTF
+  Box box;                      ///< of the finest level, faces without area included
   std::vector<Stream> streams;  ///< in the order of the meshes; empty where the file has none
   std::uint64_t total_bytes = 0;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -32,5 +33,9 @@ Result<MeshFile> read_mesh(const std::filesystem::path& path);
 /// Reads the same from memory; `extension` ("obj", "gltf", … or "") decides where the content does not.
 /// A .gltf may then have no files of its own. Errors: as above.
 Result<MeshFile> read_mesh_bytes(std::span<const std::byte> bytes, const std::string& extension);
+
+/// Returns the bytes that have to be loaded to show a file: its own and, of a glTF's, those of the buffers and images
+/// beside it, which may be missing. Errors: Unreadable, Malformed.
+Result<std::uint64_t> loaded_bytes(const std::filesystem::path& path);
 
 }  // namespace lodestone
