@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <lodestone/core/assemble.h>
+
+namespace lodestone::detail {
+
+/// Polygons as a file gives them, with attributes of its vertices, of the polygons' corners and of whole polygons.
+struct PolygonSoup {
+  std::vector<Vec3f> positions;
+  std::vector<Index> corners;                ///< positions, one polygon after the other; < positions.size()
+  std::vector<Index> sizes;                  ///< of each polygon: its number of corners
+  std::vector<Index> face_material;          ///< one per polygon, or empty
+  std::vector<Attribute> vertex_attributes;  ///< one element per position
+  std::vector<Attribute> corner_attributes;  ///< one element per corner
+  std::vector<Attribute> face_attributes;    ///< one element per polygon
+};
+
+/// Splits the polygons into triangles. Where corners or polygons have attributes, every corner of a triangle becomes a
+/// point of its own, for `assemble` to join. Appends a sentence to `notes` for what is left out or in doubt.
+/// Errors: LimitExceeded.
+Result<TriangleSoup> to_triangles(PolygonSoup polygons, std::vector<std::string>& notes);
+
+}  // namespace lodestone::detail
