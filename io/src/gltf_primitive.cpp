@@ -71,17 +71,21 @@ Result<void> check_indices(std::span<const Index> indices, std::size_t point_cou
   return {};
 }
 
-/// Turns strips and fans into separate triangles, with glTF's winding; drops what is left over at the end.
-std::vector<Index> to_triangles(std::vector<Index> corners, std::size_t mode) {
+/// Turns strips and fans into separate triangles, with glTF's winding; drops what is left over at the end. Where a
+/// strip has a position twice in a triangle it is stitched to the next: no face is meant. Pre: corners are in range.
+std::vector<Index> to_triangles(std::vector<Index> corners, std::size_t mode, const std::vector<Vec3f>& positions) {
   if (mode == kTriangles) {
     corners.resize(corners.size() / 3 * 3);
     return corners;
   }
   std::vector<Index> triangles;
   for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
-    if (mode == kTriangleFan)
+    if (mode == kTriangleFan) {
       triangles.insert(triangles.end(), {corners[i + 1], corners[i + 2], corners[0]});
-    else
+      continue;
+    }
+    const Vec3f &a = positions[corners[i]], &b = positions[corners[i + 1]], &c = positions[corners[i + 2]];
+    if (a != b && b != c && a != c)
       triangles.insert(triangles.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
   }
   return triangles;
@@ -212,7 +216,7 @@ Result<Primitive> PrimitiveReader::read_plain(const Json& json, std::size_t mode
     LODESTONE_TRY(corners, to_indices(*data, where));
     LODESTONE_CHECK(check_indices(corners, primitive.positions.size(), data->type, where));
   }
-  primitive.indices = to_triangles(std::move(corners), mode);
+  primitive.indices = to_triangles(std::move(corners), mode, primitive.positions);
   return primitive;
 }
 

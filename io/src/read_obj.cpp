@@ -1,19 +1,24 @@
-// Wavefront OBJ: v, vt, vn, f and usemtl, after the format's description in "Advanced Visualizer", appendix B1 (1992).
+// Wavefront OBJ: v, vt, vn, f, usemtl and mtllib, after the format's description in "Advanced Visualizer", appendix B1
+// (1992); colours of vertices as MeshLab writes them, behind the coordinates, and as ZBrush does, in comments (#MRGB).
 //
 // Parsed here and not by a library because positions have to be the correctly rounded floats of what the file says,
 // and because a broken file has to name its line.
 
 #include <array>
+#include <charconv>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
-#include <unordered_map>
+#include <utility>
 
 #include "number_text.h"
+#include "polygon_soup.h"
+#include "read_mtl.h"
 #include "soup_file.h"
 #include "text.h"
 #include "try.h"
+#include "vertex_color.h"
 
 namespace lodestone::detail {
 namespace {
@@ -24,21 +29,18 @@ constexpr std::array<const char*, kKindCount> kKindNames = {"vertex", "texture c
 /// A face's corner: an element of each kind, 0-based, or kNoIndex.
 using Corner = std::array<Index, kKindCount>;
 
-struct CornerHash {
-  std::size_t operator()(const Corner& c) const {
-    std::uint64_t h = c[0];
-    for (int kind = 1; kind < kKindCount; ++kind) h = h * 0x9e3779b97f4a7c15ULL + c[kind] + 1;
-    return static_cast<std::size_t>(h ^ (h >> 29));
-  }
-};
+using Rgba = std::array<float, 4>;
+constexpr Rgba kNoColor = {-1, -1, -1, -1};
 
 class ObjReader {
  public:
-  explicit ObjReader(std::string_view rest) : rest_(rest) {}
+  ObjReader(std::string_view rest, const FileFetcher& fetch) : rest_(rest), libraries_(fetch, file_) {}
 
   Result<SoupFile> read() {
     while (!rest_.empty()) LODESTONE_CHECK(read_statement(logical_line()));
-    LODESTONE_CHECK(check_forward_references());
+    if (last_reference_[kPosition].line > 0 && last_reference_[kPosition].index >= positions_.size())
+      return fail(ErrorCode::Malformed, missing_text(kPosition));
+    drop_missing_references();
     return make_soup();
   }
 
@@ -58,13 +60,17 @@ class ObjReader {
   }
 
   Result<void> read_statement(std::string_view line) {
+    if (line.starts_with("#MRGB")) return read_mrgb(line.substr(5));
+    std::string_view words = without_comment(line);
     line = line.substr(0, line.find('#'));
     const std::string_view keyword = next_token(line);
+    next_token(words);
     if (keyword == "v") return read_position(line);
     if (keyword == "vt") return read_texcoord(line);
     if (keyword == "vn") return read_normal(line);
     if (keyword == "f" || keyword == "fo") return read_face(line);
-    if (keyword == "usemtl") return use_material(line);
+    if (keyword == "usemtl") return use_material(std::string(trimmed(words)));
+    if (keyword == "mtllib") libraries_.add(words);
     if (keyword == "p" || keyword == "l") ++points_and_lines_;
     if (keyword == "curv" || keyword == "curv2" || keyword == "surf") ++free_forms_;
     return {};
@@ -87,12 +93,29 @@ class ObjReader {
     return count;
   }
 
+  /// Three coordinates, with a weight that is not looked at, or a colour of three or four components.
   Result<void> read_position(std::string_view line) {
-    std::array<float, 6> v{};
+    std::array<float, 7> v{0, 0, 0, 1, 1, 1, 1};
     LODESTONE_TRY(const std::size_t count, read_numbers(line, v, 3));
-    has_vertex_colors_ |= count == 6;
     positions_.push_back({v[0], v[1], v[2]});
+    if (count >= 6) {
+      colors_.resize(positions_.size() - 1, kNoColor);
+      colors_.push_back({v[3], v[4], v[5], count == 7 ? v[6] : -1});
+    }
     return check_room(positions_.size());
+  }
+
+  /// Blocks of eight hexadecimal digits, one for each vertex: a mask, red, green and blue.
+  Result<void> read_mrgb(std::string_view line) {
+    const std::string_view digits = next_token(line);
+    for (std::size_t at = 0; at + 8 <= digits.size(); at += 8) {
+      std::uint32_t value = 0;
+      const auto result = std::from_chars(digits.data() + at, digits.data() + at + 8, value, 16);
+      if (result.ptr != digits.data() + at + 8) return broken(text("'", digits.substr(at, 8), "' is not a colour"));
+      const auto component = [&](int shift) { return static_cast<float>(value >> shift & 0xff) / 255; };
+      painted_.push_back({component(16), component(8), component(0), -1});
+    }
+    return {};
   }
 
   Result<void> read_texcoord(std::string_view line) {
@@ -119,13 +142,16 @@ class ObjReader {
   }
 
   /// Turns a 1-based or, if negative, relative index into a 0-based one. An element may stand after its use, so an
-  /// index beyond the elements so far is only noted here, with its line.
+  /// index beyond the elements so far is only noted here, with its line. Faces whose texture coordinate or normal
+  /// cannot be there keep their shape.
   Result<Index> resolve(long long index, int kind) {
     const auto count = static_cast<long long>(element_count(kind));
-    const auto broken_index = [&] {
-      return broken(text(kKindNames[kind], " index ", index, " is out of range: there are ", count, " so far"));
-    };
-    if (index == 0 || index < -count || index >= static_cast<long long>(kNoIndex)) return broken_index();
+    if (index == 0 || index < -count || index >= static_cast<long long>(kNoIndex)) {
+      if (kind == kPosition)
+        return broken(text(kKindNames[kind], " index ", index, " is out of range: there are ", count, " so far"));
+      if (missing_[kind]++ == 0) first_missing_[kind] = line_number_;
+      return kNoIndex;
+    }
     const Index resolved = static_cast<Index>(index > 0 ? index - 1 : count + index);
     Reference& last = last_reference_[kind];
     if (last.line == 0 || resolved > last.index) last = {resolved, line_number_};
@@ -151,39 +177,42 @@ class ObjReader {
     return corner;
   }
 
-  /// Reads a polygon and splits it into a fan around its first corner.
   Result<void> read_face(std::string_view line) {
-    polygon_.clear();
+    const std::size_t first = corners_.size();
     for (std::string_view token; !(token = next_token(line)).empty();) {
       LODESTONE_TRY(const Corner corner, read_corner(token));
-      polygon_.push_back(corner);
+      corners_.push_back(corner);
     }
-    if (polygon_.size() < 3) {
-      ++short_faces_;
-      return {};
-    }
-    for (std::size_t i = 1; i + 1 < polygon_.size(); ++i) {
-      corners_.insert(corners_.end(), {polygon_[0], polygon_[i], polygon_[i + 1]});
-      face_material_.push_back(material_);
-    }
+    sizes_.push_back(static_cast<Index>(corners_.size() - first));
+    face_material_.push_back(material_);
     return check_room(corners_.size());
   }
 
-  Result<void> use_material(std::string_view line) {
-    const std::string name(next_token(line));
-    material_ = materials_.try_emplace(name, static_cast<Index>(materials_.size() + 1)).first->second;
+  Result<void> use_material(const std::string& name) {
+    const auto next = static_cast<Index>(materials_.size() + 1);
+    material_ = name.empty() ? 0 : materials_.try_emplace(name, next).first->second;
     return {};
   }
 
-  Result<void> check_forward_references() const {
-    for (int kind = 0; kind < kKindCount; ++kind) {
-      const Reference& last = last_reference_[kind];
-      if (last.line == 0 || last.index < element_count(kind)) continue;
-      return fail(ErrorCode::Malformed,
-                  text("line ", last.line, ": ", kKindNames[kind], " index ", std::uint64_t{last.index} + 1,
-                       " is out of range: the file has ", element_count(kind)));
+  std::string missing_text(int kind) const {
+    const Reference& last = last_reference_[kind];
+    return text("line ", last.line, ": ", kKindNames[kind], " index ", std::uint64_t{last.index} + 1,
+                " is out of range: the file has ", element_count(kind));
+  }
+
+  /// Takes texture coordinates and normals that the file lacks from the corners that name them.
+  void drop_missing_references() {
+    for (const int kind : {kTexcoord, kNormal}) {
+      for (Corner& corner : corners_) {
+        if (corner[kind] == kNoIndex || corner[kind] < element_count(kind)) continue;
+        corner[kind] = kNoIndex;
+        ++missing_[kind];
+      }
+      if (missing_[kind] == 0) continue;
+      const std::size_t line = first_missing_[kind] > 0 ? first_missing_[kind] : last_reference_[kind].line;
+      file_.notes.push_back(text(missing_[kind], " corners of faces name a ", kKindNames[kind],
+                                 " that the file lacks, as in line ", line, ": it has ", element_count(kind)));
     }
-    return {};
   }
 
   /// How many corners name an element of this kind.
@@ -193,37 +222,66 @@ class ObjReader {
     return count;
   }
 
-  /// Makes a point of each distinct corner.
-  SoupFile make_soup() {
+  Result<SoupFile> make_soup() {
     const std::size_t texcoord_uses = uses(kTexcoord);
-    const bool with_texcoords = texcoord_uses > 0;
     const bool with_normals = !corners_.empty() && uses(kNormal) == corners_.size();
     note_partial_attributes(texcoord_uses, with_normals);
 
-    TriangleSoup& soup = file_.soup;
-    std::vector<float> texcoords, normals;
-    std::unordered_map<Corner, Index, CornerHash> points;
-    soup.indices.reserve(corners_.size());
-    for (Corner corner : corners_) {
-      if (!with_normals) corner[kNormal] = kNoIndex;
-      const auto [entry, inserted] = points.try_emplace(corner, static_cast<Index>(soup.positions.size()));
-      soup.indices.push_back(entry->second);
-      if (!inserted) continue;
-      soup.positions.push_back(positions_[corner[kPosition]]);
-      if (with_texcoords) append(texcoords, corner[kTexcoord], texcoords_);
-      if (with_normals) append(normals, corner[kNormal], normals_);
-    }
-    if (with_normals) soup.attributes.push_back(float_attribute("NORMAL", 3, normals));
-    if (with_texcoords) soup.attributes.push_back(float_attribute("TEXCOORD_0", 2, texcoords));
-    if (!materials_.empty()) soup.face_material = std::move(face_material_);
+    PolygonSoup polygons;
+    polygons.corners.reserve(corners_.size());
+    for (const Corner& corner : corners_) polygons.corners.push_back(corner[kPosition]);
+    if (with_normals) polygons.corner_attributes.push_back(corner_attribute("NORMAL", kNormal, normals_));
+    if (texcoord_uses > 0) polygons.corner_attributes.push_back(corner_attribute("TEXCOORD_0", kTexcoord, texcoords_));
+    add_colors(polygons);
+    polygons.positions = std::move(positions_);
+    polygons.sizes = std::move(sizes_);
+    if (!materials_.empty()) polygons.face_material = std::move(face_material_);
+    LODESTONE_TRY(file_.soup, to_triangles(std::move(polygons), file_.notes));
+    make_materials();
     note_left_out();
     return std::move(file_);
   }
 
   template <std::size_t N>
-  static void append(std::vector<float>& out, Index element, const std::vector<std::array<float, N>>& elements) {
-    const std::array<float, N> value = element == kNoIndex ? std::array<float, N>{} : elements[element];
-    out.insert(out.end(), value.begin(), value.end());
+  Attribute corner_attribute(const char* name, Kind kind, const std::vector<std::array<float, N>>& elements) const {
+    std::vector<float> values;
+    values.reserve(N * corners_.size());
+    for (const Corner& corner : corners_) {
+      const std::array<float, N> value = corner[kind] == kNoIndex ? std::array<float, N>{} : elements[corner[kind]];
+      values.insert(values.end(), value.begin(), value.end());
+    }
+    return float_attribute(name, N, values);
+  }
+
+  /// Vertices without a colour are white. Only where some vertex has an alpha do the others get one.
+  void add_colors(PolygonSoup& polygons) {
+    const bool painted = colors_.empty() && !painted_.empty();
+    std::vector<Rgba>& colors = painted ? painted_ : colors_;
+    if (colors.empty()) return;
+    colors.resize(positions_.size(), kNoColor);
+    std::uint8_t component_count = 3;
+    std::vector<float> components;
+    for (const Rgba& color : colors) {
+      if (color[3] >= 0) component_count = 4;
+      components.insert(components.end(), color.begin(), color.end());
+    }
+    const float range = color_range(components);
+    components.clear();
+    std::size_t uncolored = 0;
+    for (const Rgba& color : colors) {
+      uncolored += color == kNoColor;
+      for (std::size_t i = 0; i < component_count; ++i)
+        components.push_back(color == kNoColor || (i == 3 && color[i] < 0) ? 1 : color[i] / range);
+    }
+    polygons.vertex_attributes.push_back(color_attribute(components, component_count));
+    if (uncolored > 0) file_.notes.push_back(text(uncolored, " vertices without a colour are white"));
+  }
+
+  void make_materials() {
+    std::vector<const std::string*> names(materials_.size());
+    for (const auto& [name, number] : materials_) names[number - 1] = &name;
+    for (const std::string* name : names) file_.materials.push_back(libraries_.material(*name));
+    libraries_.finish();
   }
 
   void note_partial_attributes(std::size_t texcoord_uses, bool with_normals) {
@@ -237,14 +295,8 @@ class ObjReader {
     const auto note = [&](std::size_t count, const char* what) {
       if (count > 0) file_.notes.push_back(text(count, what));
     };
-    note(short_faces_, " face statements with fewer than three corners are left out");
     note(points_and_lines_, " point and line elements are left out");
     note(free_forms_, " free-form curves and surfaces are left out");
-    if (has_vertex_colors_) file_.notes.push_back("the vertex colours are left out");
-    if (!materials_.empty())
-      file_.notes.push_back(
-          text("what ", materials_.size() == 1 ? "the material looks" : text(materials_.size(), " materials look"),
-               " like is left out; faces keep apart by material"));
   }
 
   struct Reference {
@@ -259,22 +311,28 @@ class ObjReader {
   std::vector<Vec3f> positions_;
   std::vector<std::array<float, 2>> texcoords_;
   std::vector<std::array<float, 3>> normals_;
+  std::vector<Rgba>
+      colors_;  ///< of the first vertices; kNoColor where a vertex has none, alpha −1 where a colour has none
+  std::vector<Rgba> painted_;  ///< ZBrush's, in the vertices' order
   std::vector<Corner> corners_;
-  std::vector<Corner> polygon_;
+  std::vector<Index> sizes_;  ///< one per face, as the next
   std::vector<Index> face_material_;
   std::map<std::string, Index> materials_;  ///< numbers from 1, in order of first use; 0: faces before any usemtl
   Index material_ = 0;
   std::array<Reference, kKindCount> last_reference_{};
+  std::array<std::size_t, kKindCount> missing_{};        ///< corners that name what the file lacks
+  std::array<std::size_t, kKindCount> first_missing_{};  ///< the line of a relative one
 
-  std::size_t short_faces_ = 0;
   std::size_t points_and_lines_ = 0;
   std::size_t free_forms_ = 0;
-  bool has_vertex_colors_ = false;
   SoupFile file_;
+  MaterialLibraries libraries_;
 };
 
 }  // namespace
 
-Result<SoupFile> read_obj(std::span<const std::byte> bytes) { return ObjReader(as_text(bytes)).read(); }
+Result<SoupFile> read_obj(std::span<const std::byte> bytes, const FileFetcher& fetch) {
+  return ObjReader(without_byte_order_mark(as_text(bytes)), fetch).read();
+}
 
 }  // namespace lodestone::detail

@@ -1,18 +1,22 @@
-// PLY: ASCII and binary of both byte orders, after Greg Turk's "The PLY Polygon File Format" (1994).
+// PLY: ASCII and binary of both byte orders, after Greg Turk's "The PLY Polygon File Format" (1994); textures as
+// MeshLab writes them: `texcoord` and `texnumber` of faces, and the images' names in comments.
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
-#include <concepts>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 
-#include "bytes.h"
+#include "image_file.h"
 #include "number_text.h"
+#include "polygon_soup.h"
 #include "soup_file.h"
 #include "text.h"
 #include "try.h"
+#include "vertex_color.h"
 
 namespace lodestone::detail {
 namespace {
@@ -57,6 +61,7 @@ struct Element {
 struct Header {
   Format format = Format::Ascii;
   std::vector<Element> elements;
+  std::vector<std::string> textures;  ///< of comments "TextureFile NAME"
 };
 
 tl::unexpected<Error> broken(std::string message) { return fail(ErrorCode::Malformed, "ply: " + std::move(message)); }
@@ -108,6 +113,8 @@ Result<Header> parse_header(std::string_view& rest) {
     } else if (keyword == "element") {
       LODESTONE_TRY(Element element, parse_element(line));
       header.elements.push_back(std::move(element));
+    } else if (keyword == "comment") {
+      if (next_token(line) == "TextureFile") header.textures.emplace_back(line);
     } else if (keyword == "property") {
       if (header.elements.empty()) return broken("a property stands before the first element");
       LODESTONE_TRY(Property property, parse_property(line));
@@ -133,6 +140,13 @@ class Body {
       return;
     }
     for (double left = number(*property.list_count); left > 0 && !failed_; --left) number(property.type);
+  }
+
+  /// Returns what else stands on the line of an ASCII element that has been read; such files are not what they say.
+  std::string_view rest_of_line() const {
+    if (format_ != Format::Ascii) return {};
+    std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+    return next_token(line);
   }
 
   /// The fewest bytes an element can take: what bounds a count before anything is read.
@@ -202,35 +216,92 @@ class Body {
   bool failed_ = false;
 };
 
-/// Where a vertex property goes: components of one vector of doubles.
+/// Where a property goes: components of one vector of doubles.
 enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kAlpha, kU, kV, kSlotCount };
 
 struct SlotName {
   std::string_view name;
   Slot slot;
 };
-constexpr std::array<SlotName, 18> kSlotNames = {{{"x", kX},
-                                                  {"y", kY},
-                                                  {"z", kZ},
-                                                  {"nx", kNx},
-                                                  {"ny", kNy},
-                                                  {"nz", kNz},
-                                                  {"red", kRed},
-                                                  {"green", kGreen},
-                                                  {"blue", kBlue},
-                                                  {"alpha", kAlpha},
-                                                  {"s", kU},
-                                                  {"t", kV},
-                                                  {"u", kU},
-                                                  {"v", kV},
-                                                  {"texture_u", kU},
-                                                  {"texture_v", kV},
-                                                  {"texture_s", kU},
-                                                  {"texture_t", kV}}};
+constexpr std::array kSlotNames = std::to_array<SlotName>({
+    {"x", kX},
+    {"y", kY},
+    {"z", kZ},
+    {"nx", kNx},
+    {"ny", kNy},
+    {"nz", kNz},
+    {"red", kRed},
+    {"green", kGreen},
+    {"blue", kBlue},
+    {"alpha", kAlpha},
+    {"r", kRed},
+    {"g", kGreen},
+    {"b", kBlue},
+    {"a", kAlpha},
+    {"diffuse_red", kRed},
+    {"diffuse_green", kGreen},
+    {"diffuse_blue", kBlue},
+    {"diffuse_alpha", kAlpha},
+    {"s", kU},
+    {"t", kV},
+    {"u", kU},
+    {"v", kV},
+    {"texture_u", kU},
+    {"texture_v", kV},
+    {"texture_s", kU},
+    {"texture_t", kV},
+});
+
+/// What to divide a colour's components by; of a type whose range says nothing, only the values can tell.
+float color_divisor(Scalar type, std::span<const float> components) {
+  if (type == Scalar::UInt8) return 255;
+  if (type == Scalar::UInt16) return 65535;
+  return color_range(components);
+}
+
+/// The single numbers of an element's properties, by slot.
+class Slots {
+ public:
+  explicit Slots(const Element& element) : element_(element) {
+    for (const Property& property : element.properties) {
+      const auto known = std::find_if(kSlotNames.begin(), kSlotNames.end(),
+                                      [&](const SlotName& s) { return s.name == property.name; });
+      slots_.push_back(known == kSlotNames.end() || property.list_count ? kSlotCount : known->slot);
+    }
+  }
+
+  bool has(std::initializer_list<Slot> wanted) const {
+    return std::all_of(wanted.begin(), wanted.end(),
+                       [&](Slot slot) { return std::find(slots_.begin(), slots_.end(), slot) != slots_.end(); });
+  }
+  bool known(std::size_t property) const { return slots_[property] != kSlotCount; }
+  bool is_color(std::size_t property) const { return slots_[property] >= kRed && slots_[property] <= kAlpha; }
+  void set(std::size_t property, double value) { values_[slots_[property]] = value; }
+  float operator[](Slot slot) const { return static_cast<float>(values_[slot]); }
+
+  /// Appends red, green and blue, and alpha where there is one.
+  void append_color(std::vector<float>& colors) const {
+    colors.insert(colors.end(), {(*this)[kRed], (*this)[kGreen], (*this)[kBlue]});
+    if (has({kAlpha})) colors.push_back((*this)[kAlpha]);
+  }
+
+  Attribute make_colors(std::vector<float> components) const {
+    const auto red = std::find(slots_.begin(), slots_.end(), kRed) - slots_.begin();
+    const float divisor = color_divisor(element_.properties[static_cast<std::size_t>(red)].type, components);
+    for (float& component : components) component /= divisor;
+    return color_attribute(components, has({kAlpha}) ? 4 : 3);
+  }
+
+ private:
+  const Element& element_;
+  std::vector<Slot> slots_;
+  std::array<double, kSlotCount + 1> values_{};
+};
 
 class PlyReader {
  public:
-  PlyReader(const Header& header, Body body) : header_(header), body_(body) {}
+  PlyReader(const Header& header, Body body, const FileFetcher& fetch)
+      : header_(header), body_(body), images_(fetch, file_) {}
 
   Result<SoupFile> read() {
     for (const Element& element : header_.elements) {
@@ -240,8 +311,10 @@ class PlyReader {
       if (body_.failed()) return broken(text("element ", element.name, ": the file ends or a number is broken"));
     }
     LODESTONE_CHECK(check_indices());
-    if (short_faces_ > 0)
-      file_.notes.push_back(text(short_faces_, " faces with fewer than three corners are left out"));
+    add_face_attributes();
+    make_materials();
+    if (!ignored_.empty()) file_.notes.push_back(text("properties that have no place are left out: ", ignored_));
+    LODESTONE_TRY(file_.soup, to_triangles(std::move(polygons_), file_.notes));
     return std::move(file_);
   }
 
@@ -256,121 +329,242 @@ class PlyReader {
   Result<void> read_element(const Element& element) {
     if (element.name == "vertex") return read_vertices(element);
     if (element.name == "face") return read_faces(element);
-    for (std::size_t i = 0; i < element.count && !body_.failed(); ++i)
+    if (element.name == "tristrips") return read_strips(element);
+    for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
       for (const Property& property : element.properties) body_.skip(property);
+      LODESTONE_CHECK(check_end(element, i));
+    }
     file_.notes.push_back(text(element.count, " elements '", element.name, "' are left out"));
     return {};
   }
 
-  /// Returns the slot of each property, kSlotCount for those with none.
-  static std::vector<Slot> slots_of(const Element& element) {
-    std::vector<Slot> slots;
-    for (const Property& property : element.properties) {
-      const auto* known = std::find_if(kSlotNames.begin(), kSlotNames.end(),
-                                       [&](const SlotName& s) { return s.name == property.name; });
-      slots.push_back(known == kSlotNames.end() || property.list_count ? kSlotCount : known->slot);
-    }
-    return slots;
+  Result<void> check_end(const Element& element, std::size_t number) const {
+    const std::string_view more = body_.rest_of_line();
+    if (more.empty()) return {};
+    return broken(text("element ", element.name, ' ', number, ": '", more, "' stands behind the ",
+                       element.properties.size(), " properties that the header says"));
+  }
+
+  void ignore(const Element& element, const std::string& property) {
+    ignored_ += text(ignored_.empty() ? "" : ", ", property, " of ", element.name);
   }
 
   Result<void> read_vertices(const Element& element) {
-    const std::vector<Slot> slots = slots_of(element);
-    const auto has = [&](Slot slot) { return std::find(slots.begin(), slots.end(), slot) != slots.end(); };
-    if (!has(kX) || !has(kY) || !has(kZ)) return broken("vertices have no x, y and z");
+    Slots v(element);
+    if (!v.has({kX, kY, kZ})) return broken("vertices have no x, y and z");
     if (element.count >= kNoIndex) return fail(ErrorCode::LimitExceeded, text("ply: ", element.count, " vertices"));
+    const bool with_normals = v.has({kNx, kNy, kNz}), with_texcoords = v.has({kU, kV});
+    const bool with_colors = v.has({kRed, kGreen, kBlue});
 
-    std::vector<float> normals, texcoords;
-    std::vector<double> colors;
-    std::array<double, kSlotCount + 1> v{};
+    std::vector<float> normals, texcoords, colors;
     for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
-      for (std::size_t p = 0; p < slots.size(); ++p) {
-        if (element.properties[p].list_count)
-          body_.skip(element.properties[p]);
-        else
-          v[slots[p]] = body_.number(element.properties[p].type);
-      }
-      const auto f = [&](Slot slot) { return static_cast<float>(v[slot]); };
-      file_.soup.positions.push_back({f(kX), f(kY), f(kZ)});
-      if (has(kNz)) normals.insert(normals.end(), {f(kNx), f(kNy), f(kNz)});
-      if (has(kU) && has(kV)) texcoords.insert(texcoords.end(), {f(kU), 1 - f(kV)});  // PLY's v points up.
-      if (has(kBlue)) colors.insert(colors.end(), {v[kRed], v[kGreen], v[kBlue], v[kAlpha]});
+      for (std::size_t p = 0; p < element.properties.size(); ++p) read_single(element.properties[p], p, v);
+      polygons_.positions.push_back({v[kX], v[kY], v[kZ]});
+      if (with_normals) normals.insert(normals.end(), {v[kNx], v[kNy], v[kNz]});
+      if (with_texcoords) texcoords.insert(texcoords.end(), {v[kU], 1 - v[kV]});  // PLY's v points up.
+      if (with_colors) v.append_color(colors);
+      LODESTONE_CHECK(check_end(element, i));
     }
-    if (has(kNz)) file_.soup.attributes.push_back(float_attribute("NORMAL", 3, normals));
-    if (has(kU) && has(kV)) file_.soup.attributes.push_back(float_attribute("TEXCOORD_0", 2, texcoords));
-    if (has(kBlue)) add_colors(element, slots, colors, has(kAlpha));
+    for (std::size_t p = 0; p < element.properties.size(); ++p)
+      if (!v.known(p)) ignore(element, element.properties[p].name);
+    auto& attributes = polygons_.vertex_attributes;
+    if (with_normals) attributes.push_back(float_attribute("NORMAL", 3, normals));
+    if (with_texcoords) attributes.push_back(float_attribute("TEXCOORD_0", 2, texcoords));
+    if (with_colors) attributes.push_back(v.make_colors(std::move(colors)));
     return {};
   }
 
-  void add_colors(const Element& element, const std::vector<Slot>& slots, std::span<const double> colors, bool alpha) {
-    const auto red = std::find(slots.begin(), slots.end(), kRed);
-    const Scalar type = red == slots.end() ? Scalar::Float64 : element.properties[red - slots.begin()].type;
-    if (type != Scalar::UInt8 && type != Scalar::Float32) {
-      file_.notes.push_back("the colours are left out: they are neither bytes nor floats");
-      return;
-    }
-    const std::uint8_t component_count = alpha ? 4 : 3;
-    const bool bytes = type == Scalar::UInt8;
-    Attribute attribute{"COLOR_0", bytes ? ComponentType::UInt8 : ComponentType::Float32, component_count, bytes, {}};
-    for (std::size_t i = 0; i < colors.size(); ++i) {
-      if (i % 4 == 3 && !alpha) continue;
-      if (bytes)
-        append(attribute.data, static_cast<std::uint8_t>(colors[i] > 0 ? std::min(colors[i], 255.0) : 0));
-      else
-        append(attribute.data, static_cast<float>(colors[i]));
-    }
-    file_.soup.attributes.push_back(std::move(attribute));
+  void read_single(const Property& property, std::size_t number, Slots& slots) {
+    if (property.list_count)
+      body_.skip(property);
+    else
+      slots.set(number, body_.number(property.type));
+  }
+
+  /// Returns which property lists an element's vertices; the number of properties where none does.
+  static std::size_t corner_list(const Element& element) {
+    const auto found = std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
+      return p.list_count && (p.name == "vertex_indices" || p.name == "vertex_index");
+    });
+    return static_cast<std::size_t>(found - element.properties.begin());
   }
 
   Result<void> read_faces(const Element& element) {
-    for (std::size_t i = 0; i < element.count && !body_.failed(); ++i)
-      for (const Property& property : element.properties) {
-        const bool corners =
-            property.list_count && (property.name == "vertex_indices" || property.name == "vertex_index");
-        if (!corners) {
-          body_.skip(property);
-          continue;
+    Slots f(element);
+    const std::size_t corners = corner_list(element);
+    const bool with_colors = f.has({kRed, kGreen, kBlue});
+    std::vector<float> colors;
+    for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
+      const std::size_t first = polygons_.corners.size();
+      texcoords_of_face_.clear();
+      texture_of_face_ = 0;
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        if (p == corners) {
+          LODESTONE_CHECK(read_polygon(i, element.properties[p]));
+        } else {
+          read_face_property(element.properties[p], p, f);
         }
-        LODESTONE_CHECK(read_polygon(i, property));
       }
-    if (file_.soup.indices.size() >= kNoIndex) return fail(ErrorCode::LimitExceeded, "ply: too many triangles");
+      add_polygon(first);
+      if (with_colors) f.append_color(colors);
+      LODESTONE_CHECK(check_end(element, i));
+    }
+    for (std::size_t p = 0; p < element.properties.size(); ++p)
+      if (p != corners && !f.is_color(p) && !is_texture(element.properties[p]))
+        ignore(element, element.properties[p].name);
+    if (with_colors) face_colors_ = f.make_colors(std::move(colors));
     return {};
   }
 
-  /// Splits a polygon into a fan around its first corner.
+  static bool is_texture(const Property& property) {
+    return property.name == (property.list_count ? "texcoord" : "texnumber");
+  }
+
+  void read_face_property(const Property& property, std::size_t number, Slots& slots) {
+    if (!is_texture(property))
+      read_single(property, number, slots);
+    else if (property.list_count)
+      read_list(property, texcoords_of_face_);
+    else
+      texture_of_face_ = body_.number(property.type);
+  }
+
+  void read_list(const Property& property, std::vector<float>& out) {
+    for (double left = body_.number(*property.list_count); left > 0 && !body_.failed(); --left)
+      out.push_back(static_cast<float>(body_.number(property.type)));
+  }
+
   Result<void> read_polygon(std::size_t face, const Property& property) {
-    const double count = body_.number(*property.list_count);
-    std::array<Index, 2> kept{};  // the first corner and the last
-    for (double i = 0; i < count && !body_.failed(); ++i) {
+    for (double left = body_.number(*property.list_count); left > 0 && !body_.failed(); --left) {
       const double corner = body_.number(property.type);
       if (!(corner >= 0 && corner < kNoIndex)) return broken(text("face ", face, ": vertex index ", corner));
-      const auto index = static_cast<Index>(corner);
-      if (i >= 2) file_.soup.indices.insert(file_.soup.indices.end(), {kept[0], kept[1], index});
-      kept[i > 0 ? 1 : 0] = index;
+      polygons_.corners.push_back(static_cast<Index>(corner));
     }
-    short_faces_ += !(count >= 3);
+    if (polygons_.corners.size() >= kNoIndex) return fail(ErrorCode::LimitExceeded, "ply: too many corners");
     return {};
+  }
+
+  /// Ends the face whose corners begin with number `first`; corners before them without texture coordinates get 0, 0.
+  void add_polygon(std::size_t first) {
+    const std::size_t corner_count = polygons_.corners.size() - first;
+    polygons_.sizes.push_back(static_cast<Index>(corner_count));
+    face_texture_.push_back(texture_of_face_);
+    if (texcoords_of_face_.size() < 2 * corner_count || corner_count == 0) {
+      corners_without_texcoords_ += corner_count;
+      return;
+    }
+    corner_texcoords_.resize(2 * first);
+    for (std::size_t i = 0; i < corner_count; ++i)
+      corner_texcoords_.insert(corner_texcoords_.end(), {texcoords_of_face_[2 * i], 1 - texcoords_of_face_[2 * i + 1]});
+  }
+
+  /// Lists of vertices of which every three in a row are a triangle, each turned the other way; −1 begins anew.
+  Result<void> read_strips(const Element& element) {
+    const std::size_t corners = corner_list(element);
+    for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        if (p == corners) {
+          LODESTONE_CHECK(read_strip(i, element.properties[p]));
+        } else {
+          body_.skip(element.properties[p]);
+        }
+      }
+      LODESTONE_CHECK(check_end(element, i));
+    }
+    return {};
+  }
+
+  Result<void> read_strip(std::size_t strip, const Property& property) {
+    std::array<Index, 2> last{};
+    std::size_t length = 0;
+    for (double left = body_.number(*property.list_count); left > 0 && !body_.failed(); --left) {
+      const double corner = body_.number(property.type);
+      if (corner == -1) {
+        length = 0;
+        continue;
+      }
+      if (!(corner >= 0 && corner < kNoIndex)) return broken(text("strip ", strip, ": vertex index ", corner));
+      const auto index = static_cast<Index>(corner);
+      if (length >= 2 && last[0] != last[1] && last[1] != index && last[0] != index) add_triangle(last, index, length);
+      last = {last[1], index};
+      ++length;
+    }
+    if (polygons_.corners.size() >= kNoIndex) return fail(ErrorCode::LimitExceeded, "ply: too many corners");
+    return {};
+  }
+
+  void add_triangle(const std::array<Index, 2>& last, Index index, std::size_t length) {
+    const bool turned = length % 2 != 0;
+    polygons_.corners.insert(polygons_.corners.end(), {last[turned], last[!turned], index});
+    polygons_.sizes.push_back(3);
+    face_texture_.push_back(0);
+    corners_without_texcoords_ += 3;
   }
 
   Result<void> check_indices() const {
-    const TriangleSoup& soup = file_.soup;
-    for (std::size_t i = 0; i < soup.indices.size(); ++i)
-      if (soup.indices[i] >= soup.positions.size())
-        return broken(text("vertex index ", soup.indices[i], " is out of range: there are ", soup.positions.size()));
+    for (const Index index : polygons_.corners)
+      if (index >= polygons_.positions.size())
+        return broken(text("vertex index ", index, " is out of range: there are ", polygons_.positions.size()));
     return {};
+  }
+
+  static bool has_colors(const std::vector<Attribute>& attributes) {
+    return std::any_of(attributes.begin(), attributes.end(), [](const Attribute& a) { return a.name == "COLOR_0"; });
+  }
+
+  /// What corners say of texture coordinates is finer than what vertices do, their colours finer than those of faces.
+  void add_face_attributes() {
+    if (!corner_texcoords_.empty()) {
+      std::erase_if(polygons_.vertex_attributes, [](const Attribute& a) { return a.name == "TEXCOORD_0"; });
+      corner_texcoords_.resize(2 * polygons_.corners.size());
+      polygons_.corner_attributes.push_back(float_attribute("TEXCOORD_0", 2, corner_texcoords_));
+      if (corners_without_texcoords_ > 0)
+        file_.notes.push_back(text(corners_without_texcoords_, " corners without texture coordinates got 0, 0"));
+    }
+    if (!face_colors_) return;
+    if (has_colors(polygons_.vertex_attributes))
+      file_.notes.push_back("the colours of faces are left out, since vertices have colours, too");
+    else if (face_colors_->data.size() ==
+             polygons_.sizes.size() * face_colors_->element_bytes())  // no strips among them
+      polygons_.face_attributes.push_back(std::move(*face_colors_));
+  }
+
+  /// One material for each texture that a comment names; faces go by `texnumber`, else take the first.
+  void make_materials() {
+    if (header_.textures.empty()) return;
+    for (const std::string& name : header_.textures) {
+      Material material;
+      material.name = std::filesystem::path(tidy_path(name)).stem().string();
+      if (const auto image = images_.load(name, ""))
+        material.base_color_texture = Texture{*image, {1, 1}, {0, 0}, false};
+      file_.materials.push_back(std::move(material));
+    }
+    for (const double texture : face_texture_) {
+      const bool known = texture >= 0 && texture < static_cast<double>(header_.textures.size());
+      polygons_.face_material.push_back(known ? static_cast<Index>(texture) + 1 : 0);
+    }
   }
 
   const Header& header_;
   Body body_;
   SoupFile file_;
-  std::size_t short_faces_ = 0;
+  ImageLoader images_;
+  PolygonSoup polygons_;
+  std::vector<double> face_texture_;      ///< one per polygon: which of the textures
+  std::vector<float> corner_texcoords_;   ///< of the first corners
+  std::optional<Attribute> face_colors_;  ///< one element per element 'face'
+  std::vector<float> texcoords_of_face_;  ///< of the face being read, as the next
+  double texture_of_face_ = 0;
+  std::size_t corners_without_texcoords_ = 0;
+  std::string ignored_;
 };
 
 }  // namespace
 
-Result<SoupFile> read_ply(std::span<const std::byte> bytes) {
-  std::string_view rest = as_text(bytes);
+Result<SoupFile> read_ply(std::span<const std::byte> bytes, const FileFetcher& fetch) {
+  std::string_view rest = without_byte_order_mark(as_text(bytes));
   LODESTONE_TRY(const Header header, parse_header(rest));
-  return PlyReader(header, Body(header.format, rest)).read();
+  return PlyReader(header, Body(header.format, rest), fetch).read();
 }
 
 }  // namespace lodestone::detail

@@ -1,35 +1,17 @@
 #include "scene_images.h"
 
-#include <array>
-#include <string_view>
-
 #include "gltf_container.h"
+#include "image_file.h"
 #include "text.h"
 #include "try.h"
 
 namespace lodestone::detail {
 namespace {
 
-using namespace std::string_view_literals;
-
-struct ImageType {
-  std::string_view magic;
-  std::size_t at;
-  const char* mime_type;
-};
-
-constexpr std::array<ImageType, 5> kImageTypes = {{{"\x89PNG\r\n\x1a\n"sv, 0, "image/png"},
-                                                   {"\xff\xd8\xff"sv, 0, "image/jpeg"},
-                                                   {"WEBP"sv, 8, "image/webp"},
-                                                   {"\xabKTX 20\xbb\r\n\x1a\n"sv, 0, "image/ktx2"},
-                                                   {"sB"sv, 0, "image/x-basis"}}};
-
 /// Goes by the content, since extensions and declared types are often wrong; else by what the document declares.
 std::string mime_type_of(std::span<const std::byte> bytes, const std::string& declared) {
-  const std::string_view start = as_text(bytes).substr(0, 16);
-  for (const ImageType& type : kImageTypes)
-    if (start.size() >= type.at && start.substr(type.at).starts_with(type.magic)) return type.mime_type;
-  return declared;
+  std::string type = image_type(bytes);
+  return type.empty() ? declared : type;
 }
 
 Result<EmbeddedImage> fetch_image(const Json& image, const std::string& uri, const FileFetcher& fetch) {

@@ -114,76 +114,16 @@ Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetche
   return Scene(std::move(scene));
 }
 
-/// Renumbers the faces' materials as primitives, and returns the materials' numbers by primitive.
-std::vector<Index> number_primitives(Mesh& mesh) {
-  std::map<Index, Index> primitive_of;
-  for (const Index material : mesh.face_material) primitive_of[material] = 0;
-  if (mesh.face_material.empty() && mesh.face_count() > 0) primitive_of[0] = 0;
-  std::vector<Index> materials;
-  for (auto& [material, primitive] : primitive_of) {
-    primitive = static_cast<Index>(materials.size());
-    materials.push_back(material);
-  }
-  for (Index& material : mesh.face_material) material = primitive_of[material];
-  if (materials.size() <= 1) mesh.face_material.clear();
-  return materials;
-}
-
-Json placeholder_document(const std::string& name, std::span<const Index> materials) {
-  Json document = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
-  document["scenes"] = Json::array({Json{{"nodes", Json::array({0})}}});
-  Json node = Json::object(), mesh = Json::object();
-  if (!name.empty()) node["name"] = mesh["name"] = name;
-  if (!materials.empty()) node["mesh"] = 0;
-  document["nodes"] = Json::array({std::move(node)});
-  if (materials.empty()) return document;
-  for (const Index number : materials) {
-    Json primitive = {{"attributes", Json::object()}};
-    if (number != 0) {
-      primitive["material"] = document.contains("materials") ? document["materials"].size() : 0;
-      document["materials"].push_back({{"name", text("material ", number)},
-                                       {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}});
-    }
-    mesh["primitives"].push_back(std::move(primitive));
-  }
-  document["meshes"] = Json::array({std::move(mesh)});
-  return document;
-}
-
 }  // namespace
-
-Result<Scene> Scene::from_mesh(MeshFile file, const std::string& name) {
-  auto scene = std::make_shared<Impl>();
-  const std::vector<Index> materials = number_primitives(file.mesh);
-  const std::string json = placeholder_document(name, materials).dump(-1, ' ', false, Json::error_handler_t::replace);
-  LODESTONE_TRY(scene->document, GltfDocument::parse(std::as_bytes(std::span(json)), nothing_beside));
-  scene->notes = std::move(file.notes);
-  if (materials.empty()) {
-    scene->dropped.push_back(file.assembly);
-    return Scene(std::move(scene));
-  }
-  MeshSource source = source_of(file.mesh, materials.size());
-  source.nodes = {0};
-  SceneMesh mesh;
-  mesh.name = name;
-  for (const Index number : materials) mesh.materials.push_back(number == 0 ? "" : text("material ", number));
-  mesh.mesh = std::move(file.mesh);
-  mesh.assembly = file.assembly;
-  scene->meshes.push_back(std::move(mesh));
-  scene->sources.push_back(std::move(source));
-  LODESTONE_CHECK(measure_instances(*scene));
-  return Scene(std::move(scene));
-}
 
 Result<Scene> Scene::read(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
   if (!is_gltf(bytes, extension_of(path))) {
-    auto file = read_mesh_bytes(bytes, extension_of(path));
+    auto file = detail::read_mesh_bytes(bytes, extension_of(path), files_beside(path));
     if (!file) return tl::unexpected<Error>(with_path(std::move(file).error(), path));
     return from_mesh(std::move(*file), path.stem().string());
   }
-  const auto fetch = [&](const std::filesystem::path& relative) { return read_file(path.parent_path() / relative); };
-  return read_gltf_scene(bytes, fetch, Levels::Refused).map_error([&](Error error) {
+  return read_gltf_scene(bytes, files_beside(path), Levels::Refused).map_error([&](Error error) {
     return with_path(std::move(error), path);
   });
 }

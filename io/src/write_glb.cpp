@@ -6,7 +6,9 @@
 namespace lodestone::detail {
 
 Result<std::vector<std::byte>> to_glb(const Mesh& mesh, const std::string& name) {
-  LODESTONE_TRY(const Scene scene, Scene::from_mesh({mesh, {}, {}}, name));
+  MeshFile file;
+  file.mesh = mesh;
+  LODESTONE_TRY(const Scene scene, Scene::from_mesh(std::move(file), name));
   std::vector<LeveledMesh> levels(scene.meshes().size());
   for (std::size_t i = 0; i < levels.size(); ++i) {
     levels[i].levels.resize(1);

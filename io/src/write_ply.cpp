@@ -5,6 +5,7 @@
 #include "bytes.h"
 #include "mesh_writers.h"
 #include "text.h"
+#include "vertex_color.h"
 
 namespace lodestone::detail {
 namespace {
@@ -13,16 +14,19 @@ namespace {
 struct PlyAttributes {
   const Attribute* normals = nullptr;
   const Attribute* texcoords = nullptr;
-  const Attribute* colors = nullptr;  ///< three or four normalized bytes
+  std::vector<float> colors;  ///< linear, `color_components` for each wedge
+  std::size_t color_components = 0;
 
-  bool any() const { return normals != nullptr || texcoords != nullptr || colors != nullptr; }
+  bool any() const { return normals != nullptr || texcoords != nullptr || color_components > 0; }
 };
 
 PlyAttributes find_attributes(const Mesh& mesh) {
-  PlyAttributes found{find_float_attribute(mesh, "NORMAL", 3), find_float_attribute(mesh, "TEXCOORD_0", 2), nullptr};
-  for (const Attribute& a : mesh.attributes)
-    if (a.name == "COLOR_0" && a.type == ComponentType::UInt8 && a.component_count >= 3 && a.component_count <= 4)
-      found.colors = &a;
+  PlyAttributes found{find_float_attribute(mesh, "NORMAL", 3), find_float_attribute(mesh, "TEXCOORD_0", 2), {}, 0};
+  for (const Attribute& a : mesh.attributes) {
+    if (a.name != "COLOR_0" || a.component_count < 3 || a.component_count > 4) continue;
+    found.colors = attribute_values(a);
+    found.color_components = a.component_count;
+  }
   return found;
 }
 
@@ -34,13 +38,21 @@ std::string header(std::size_t point_count, std::size_t face_count, const PlyAtt
   properties("float", {"x", "y", "z"});
   if (attributes.normals != nullptr) properties("float", {"nx", "ny", "nz"});
   if (attributes.texcoords != nullptr) properties("float", {"s", "t"});
-  if (attributes.colors != nullptr) properties("uchar", {"red", "green", "blue"});
-  if (attributes.colors != nullptr && attributes.colors->component_count == 4) properties("uchar", {"alpha"});
+  if (attributes.color_components > 0) properties("uchar", {"red", "green", "blue"});
+  if (attributes.color_components == 4) properties("uchar", {"alpha"});
   return out + text("element face ", face_count, "\nproperty list uchar uint vertex_indices\nend_header\n");
 }
 
 void append_element(std::vector<std::byte>& out, const Attribute& attribute, std::size_t wedge) {
   append_bytes(out, std::span(attribute.data).subspan(wedge * attribute.element_bytes(), attribute.element_bytes()));
+}
+
+/// PLY's colours are bytes of sRGB.
+void append_color(std::vector<std::byte>& out, const PlyAttributes& attributes, std::size_t wedge) {
+  for (std::size_t i = 0; i < attributes.color_components; ++i) {
+    const float value = attributes.colors[wedge * attributes.color_components + i];
+    append(out, i == 3 ? share_byte(value) : srgb_byte(value));
+  }
 }
 
 void append_wedge(std::vector<std::byte>& out, const Mesh& mesh, const PlyAttributes& attributes, std::size_t wedge) {
@@ -50,7 +62,7 @@ void append_wedge(std::vector<std::byte>& out, const Mesh& mesh, const PlyAttrib
     append(out, load_f32(attributes.texcoords->data, 8 * wedge));
     append(out, 1 - load_f32(attributes.texcoords->data, 8 * wedge + 4));  // PLY's t points up.
   }
-  if (attributes.colors != nullptr) append_element(out, *attributes.colors, wedge);
+  append_color(out, attributes, wedge);
 }
 
 }  // namespace

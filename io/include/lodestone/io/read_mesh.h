@@ -10,6 +10,7 @@
 #include <lodestone/core/assemble.h>
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/result.h>
+#include <lodestone/io/material.h>
 
 namespace lodestone {
 
@@ -17,21 +18,24 @@ namespace lodestone {
 struct MeshFile {
   Mesh mesh;
   AssemblyReport assembly;
-  std::vector<std::string> notes;  ///< what the file holds that `mesh` does not, one sentence each
+  std::vector<Material> materials;  ///< those that faces name, by their number − 1; none of glTF, which `Scene` keeps
+  std::vector<Image> images;        ///< of the materials' textures
+  std::vector<std::string> notes;   ///< what the file holds that `mesh` does not, one sentence each
 };
 
-/// Reads triangles from OBJ, PLY, STL, glTF or GLB (by content, then by extension), or whatever Assimp knows.
+/// Reads triangles from OBJ, PLY, STL, OFF, glTF or GLB (by content, then by extension), or whatever Assimp knows.
 ///
 /// Coordinates are the correctly rounded floats of what the file says (not promised for Assimp's formats). A glTF scene
 /// is flattened into world space; of a multi-LOD file the finest level is read. Draco, KHR_mesh_quantization and
-/// meshopt compression are decoded. Attributes keep the file's types; texture coordinates follow glTF, v downwards.
-/// A face's material is 0 where the file names none, else a number from 1: glTF's material index + 1, elsewhere in
-/// order of first use.
-/// Errors: Unreadable, Malformed, LimitExceeded, Unsupported; messages name the file's part and its numbers.
+/// meshopt compression are decoded. Texture coordinates follow glTF, v downwards; so do colours: COLOR_0 is linear
+/// light, 16 bits where the file has sRGB. Other attributes keep the file's types. Concave polygons become triangles
+/// that cover them. OBJ's material libraries and textures are read from beside the file. A face's material is 0 where
+/// the file names none, else a number from 1: glTF's material index + 1, elsewhere in order of first use. Errors:
+/// Unreadable, Malformed, LimitExceeded, Unsupported; messages name the file's part and its numbers.
 Result<MeshFile> read_mesh(const std::filesystem::path& path);
 
 /// Reads the same from memory; `extension` ("obj", "gltf", … or "") decides where the content does not.
-/// A .gltf may then have no files of its own. Errors: as above.
+/// Files beside it are out of reach: a .gltf may have none, materials of OBJ stay plain. Errors: as above.
 Result<MeshFile> read_mesh_bytes(std::span<const std::byte> bytes, const std::string& extension);
 
 /// Returns the bytes that have to be loaded to show a file: its own and, of a glTF's, those of the buffers and images

@@ -47,7 +47,8 @@ class Scene {
   static Result<Scene> read_multi_lod(const std::filesystem::path& path);
   /// The same from memory.
   static Result<Scene> read_multi_lod_bytes(std::span<const std::byte> bytes);
-  /// Makes a scene of one node and its mesh, with a plain material for each number that faces use; 0 stands for none.
+  /// Makes a scene of one node and its mesh, with the file's materials that faces use, and plain ones for numbers that
+  /// it does not describe; 0 stands for none, or for a plain one where vertices have colours.
   static Result<Scene> from_mesh(MeshFile file, const std::string& name);
 
   /// The meshes to make levels of, in the document's order.
