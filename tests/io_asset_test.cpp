@@ -33,14 +33,14 @@ std::vector<AssetLevel> sphere_levels() {
 
 /// Levels number the primitives of their scene, where readers number materials.
 Mesh numbered_by_primitive(Mesh mesh) {
-  const Scene scene = Scene::from_mesh({std::move(mesh), {}, {}}, "").value();
+  const Scene scene = Scene::from_mesh({std::move(mesh), {}, {}, {}, {}}, "").value();
   return scene.meshes()[0].mesh;
 }
 
 /// Encodes levels as those of a scene of one mesh, which the first of them describes.
 Result<EncodedAsset> encode(std::span<const AssetLevel> levels, const AssetOptions& options,
                             std::size_t stream_bytes = 0) {
-  const Scene scene = Scene::from_mesh({levels[0].mesh, {}, {}}, "thing").value();
+  const Scene scene = Scene::from_mesh({levels[0].mesh, {}, {}, {}, {}}, "thing").value();
   const LeveledMesh mesh{{levels.begin(), levels.end()}, std::vector<std::byte>(stream_bytes, std::byte{7})};
   return encode_scene(scene, std::span(&mesh, scene.meshes().size()), options);
 }
@@ -376,7 +376,7 @@ TEST_CASE("options out of range are named") {
   REQUIRE_FALSE(asset);
   CHECK(asset.error().code == ErrorCode::InvalidArgument);
   CHECK_THAT(asset.error().message, contains("draco_position_bits is 31"));
-  const Scene scene = Scene::from_mesh({mesh_of(tetrahedron()), {}, {}}, "").value();
+  const Scene scene = Scene::from_mesh({mesh_of(tetrahedron()), {}, {}, {}, {}}, "").value();
   CHECK_FALSE(encode_scene(scene, {}, {}));
   CHECK_FALSE(encode_scene(scene, std::vector<LeveledMesh>(1), {}));
 }

@@ -350,7 +350,7 @@ TEST_CASE("levels are measured as clients decode them, attributes and all") {
     INFO(shape.name);
     const auto assembled = assemble(shape.soup);
     if (assembled->mesh.face_count() == 0) continue;
-    const Scene scene = checked(Scene::from_mesh({assembled->mesh, {}, {}}, "shape"));
+    const Scene scene = checked(Scene::from_mesh({assembled->mesh, {}, {}, {}, {}}, "shape"));
     AssetOptions options;
     options.draco_position_bits = 12;
     std::vector<AssetLevel> measured;

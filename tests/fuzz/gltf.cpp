@@ -17,7 +17,7 @@ std::vector<lodestone::test::Bytes> lodestone::test::fuzz_seeds() {
     mesh.levels.resize(2);
     mesh.levels[0].mesh = assemble(seam_cube(2))->mesh;
     mesh.levels[1].mesh = assemble(seam_cube(1))->mesh;
-    const auto scene = Scene::from_mesh({mesh.levels[0].mesh, {}, {}}, "cube");
+    const auto scene = Scene::from_mesh({mesh.levels[0].mesh, {}, {}, {}, {}}, "cube");
     AssetOptions options;
     options.draco = draco;
     const auto asset = encode_scene(*scene, std::span(&mesh, 1), options);
