@@ -25,8 +25,8 @@ Mesh level_of(const Mesh& mesh, double ratio) {
   return extract_level(result->mesh, cursor);
 }
 
-double rms(const Mesh& a, const Mesh& b) {
-  const Deviation deviation = measure_deviation(a, b);
+double rms(const Mesh& a, const Mesh& b, const DeviationOptions& options = {}) {
+  const Deviation deviation = measure_deviation(a, b, options);
   return deviation.forward.rms + deviation.backward.rms;
 }
 
@@ -117,6 +117,23 @@ TEST_CASE("fitting keeps the topology of every family, opens no crack and turns 
       for (Index f = 0; f < fitted.face_count(); ++f) CHECK(length(area_vector(fitted, f)) > 1e-12 * scale * scale);
       if (shape.name.starts_with("seam") || shape.name.starts_with("slit"))
         for (Index f = 0; f < fitted.face_count(); ++f) CHECK(texture_area(fitted, f) >= 0);
+    }
+  }
+}
+
+TEST_CASE("sheets that lie on one another are fitted like one of them, and lie on one another still") {
+  DeviationOptions few;
+  few.sample_count = 5000;
+  for (const TriangleSoup& sister : {icosphere(3, 0.02, 2), torus(24, 16), terrain(20, 3)}) {
+    const Mesh once = mesh_of(sister);
+    const double single = rms(once, optimise_placement(once, level_of(once, 0.15)), few);
+    for (const TriangleSoup& soup : {stacked(sister, 2), layered(sister, 3), two_sided(sister)}) {
+      const std::size_t count = soup.indices.size() / sister.indices.size();
+      INFO(once.face_count() << " faces, " << count << " sheets");
+      const Mesh mesh = mesh_of(soup);
+      const Mesh fitted = optimise_placement(mesh, level_of(mesh, 0.15));
+      CHECK(is_layered(fitted, count));
+      CHECK(rms(once, fitted, few) < 1.25 * single);
     }
   }
 }

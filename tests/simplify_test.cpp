@@ -29,17 +29,6 @@ std::vector<std::vector<Index>> buffers(const Cursor& cursor, std::size_t group_
   return all;
 }
 
-std::set<Index> vertices_of(const Mesh& mesh, Index face) {
-  return {mesh.corner_vertex(3 * face), mesh.corner_vertex(3 * face + 1), mesh.corner_vertex(3 * face + 2)};
-}
-
-/// Whether each of a mesh's faces is there `count` times, wherever it faces.
-bool is_layered(const Mesh& mesh, std::size_t count) {
-  std::map<std::set<Index>, std::size_t> faces;
-  for (Index f = 0; f < mesh.face_count(); ++f) ++faces[vertices_of(mesh, f)];
-  return std::all_of(faces.begin(), faces.end(), [&](const auto& entry) { return entry.second == count; });
-}
-
 /// The distance from a mesh to the level of at most so many faces.
 double rms_at(const Mesh& mesh, const SimplifyResult& result, std::size_t faces) {
   Cursor level(result.mesh);

@@ -45,8 +45,15 @@ class SeamedSurface {
       : mesh_(mesh),
         across_(mesh.corner_wedge.size(), kNoIndex),
         wedge_corners_(mesh.wedge_count(), mesh.corner_wedge.size(), [&](Index c) { return mesh.corner_wedge[c]; }) {
-    for (const MeshEdge& edge : list_edges(mesh))
-      if (!edge.constrained) across_[edge.corners[0]] = edge.corners[1], across_[edge.corners[1]] = edge.corners[0];
+    const auto join = [&](const std::array<Index, 2>& corners) {
+      across_[corners[0]] = corners[1];
+      across_[corners[1]] = corners[0];
+    };
+    for (const MeshEdge& edge : list_edges(mesh)) {
+      if (edge.constrained) continue;
+      join(edge.corners);
+      for (const auto& corners : edge.layers) join(corners);
+    }
   }
 
   /// Walks from the faces at a wedge towards `p`, nearest faces first, until it comes no nearer.

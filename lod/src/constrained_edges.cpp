@@ -1,6 +1,8 @@
 #include "constrained_edges.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 namespace lodestone::detail {
 namespace {
@@ -14,6 +16,30 @@ bool is_free(const Mesh& mesh, Index a, Index b) {
   const auto& wedge = mesh.corner_wedge;
   return wedge[next_corner(a)] == wedge[previous_corner(b)] && wedge[previous_corner(a)] == wedge[next_corner(b)] &&
          mesh.material_of(face_of_corner(a)) == mesh.material_of(face_of_corner(b));
+}
+
+// At an edge of more faces than these nobody drew sheets; it is a line.
+constexpr std::size_t kMostFacesAtEdge = 32;
+
+/// Pairs each face on one side of an edge with a neighbour on the other. Leaves the edge as it is where there are no two
+/// sides, or some face has no neighbour: then it is a line of some sheet.
+void pair_corners(const Mesh& mesh, std::span<const HalfEdge> halves, MeshEdge& edge) {
+  std::vector<Index> left, right;
+  const auto side = [&](Index corner) { return mesh.corner_vertex(corner); };
+  for (const HalfEdge& half : halves)
+    (side(half.corner) == side(halves[0].corner) ? left : right).push_back(half.corner);
+  const bool two_sides = std::all_of(right.begin(), right.end(), [&](Index c) { return side(c) == side(right[0]); });
+  if (left.size() != right.size() || !two_sides) return;
+  std::vector<std::array<Index, 2>> pairs;
+  for (const Index corner : left) {
+    const auto found = std::find_if(right.begin(), right.end(), [&](Index c) { return is_free(mesh, corner, c); });
+    if (found == right.end()) return;
+    pairs.push_back({corner, *found});
+    right.erase(found);
+  }
+  edge.constrained = false;
+  edge.corners = pairs[0];
+  edge.layers.assign(pairs.begin() + 1, pairs.end());
 }
 
 }  // namespace
@@ -33,8 +59,14 @@ std::vector<MeshEdge> list_edges(const Mesh& mesh) {
     while (j < halves.size() && halves[j].vertices == halves[i].vertices) ++j;
     MeshEdge& edge = edges.emplace_back();
     edge.vertices = halves[i].vertices;
-    edge.constrained = j - i != 2 || !is_free(mesh, halves[i].corner, halves[i + 1].corner);
-    if (!edge.constrained) edge.corners = {halves[i].corner, halves[i + 1].corner};
+    edge.constrained = true;
+    const auto [a, b] = std::pair(halves[i].corner, halves[j - 1].corner);
+    if (j - i == 2 && mesh.corner_vertex(a) != mesh.corner_vertex(b) && is_free(mesh, a, b)) {
+      edge.constrained = false;
+      edge.corners = {a, b};
+    } else if (j - i > 2 && j - i <= kMostFacesAtEdge) {
+      pair_corners(mesh, std::span(halves).subspan(i, j - i), edge);
+    }
   }
   return edges;
 }

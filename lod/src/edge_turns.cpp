@@ -40,22 +40,33 @@ class EdgeTurner {
     Index a, b, c, d;  // wedges
   };
 
+  Quad quad_at(const std::array<Index, 2>& corners) const {
+    const auto wedge = [&](Index corner) { return mesh_.corner_wedge[corner]; };
+    return {{face_of_corner(corners[0]), face_of_corner(corners[1])},
+            wedge(next_corner(corners[0])),
+            wedge(previous_corner(corners[0])),
+            wedge(corners[0]),
+            wedge(corners[1])};
+  }
+
+  /// Turns the edge in all sheets that lie on one another, or in none.
   bool turn(const MeshEdge& edge) {
-    const Index corner = edge.corners[0];
-    const Index across = edge.corners[1];
-    const Quad quad{{face_of_corner(corner), face_of_corner(across)},
-                    mesh_.corner_wedge[next_corner(corner)],
-                    mesh_.corner_wedge[previous_corner(corner)],
-                    mesh_.corner_wedge[corner],
-                    mesh_.corner_wedge[across]};
-    if (taken_[quad.face[0]] != 0 || taken_[quad.face[1]] != 0 || has_edge(quad.c, quad.d)) return false;
-    if (!keeps_shape(quad) || turns_texture(quad) || !is_nearer(quad) || !is_let_pass(quad)) return false;
-    for (std::size_t i = 0; i < 2; ++i) taken_[quad.face[i]] = 1;
-    set_face(quad.face[0], {quad.a, quad.d, quad.c});
-    set_face(quad.face[1], {quad.d, quad.b, quad.c});
+    quads_.assign(1, quad_at(edge.corners));
+    for (const auto& corners : edge.layers) quads_.push_back(quad_at(corners));
+    const Quad& quad = quads_.front();
+    const auto is_taken = [&](const Quad& q) { return taken_[q.face[0]] != 0 || taken_[q.face[1]] != 0; };
+    if (std::any_of(quads_.begin(), quads_.end(), is_taken) || has_edge(quad.c, quad.d)) return false;
+    const auto turns = [&](const Quad& q) { return turns_texture(q); };
+    if (!keeps_shape(quad) || std::any_of(quads_.begin(), quads_.end(), turns)) return false;
+    if (!is_nearer() || !is_let_pass(quad)) return false;
+    for (const Quad& q : quads_) {
+      for (std::size_t i = 0; i < 2; ++i) taken_[q.face[i]] = 1;
+      set_face(q.face[0], {q.a, q.d, q.c});
+      set_face(q.face[1], {q.d, q.b, q.c});
+      for (const Index face : q.face)
+        for (const Index i : samples_of_face_[face]) place(samples_[i], q);
+    }
     added_.push_back(std::minmax(vertex(quad.c), vertex(quad.d)));
-    for (const Index face : quad.face)
-      for (const Index i : samples_of_face_[face]) place(samples_[i], quad);
     return true;
   }
 
@@ -107,19 +118,21 @@ class EdgeTurner {
     return false;
   }
 
-  bool is_nearer(const Quad& q) const {
-    double before = 0;
-    double after = 0;
+  bool is_nearer() const {
+    const Quad& q = quads_.front();
     const Triangle first = triangle(q.a, q.d, q.c);
     const Triangle second = triangle(q.d, q.b, q.c);
-    for (const Index face : q.face)
-      for (const Index i : samples_of_face_[face]) {
-        const SurfaceSample& sample = samples_[i];
-        before += sample.weight * norm_.error(sample.squared_distance);
-        const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
-        const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
-        after += sample.weight * norm_.error(std::min(near_first, near_second));
-      }
+    double before = 0;
+    double after = 0;
+    const auto add = [&](const SurfaceSample& sample) {
+      before += sample.weight * norm_.error(sample.squared_distance);
+      const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
+      const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
+      after += sample.weight * norm_.error(std::min(near_first, near_second));
+    };
+    for (const Quad& layer : quads_)
+      for (const Index face : layer.face)
+        for (const Index i : samples_of_face_[face]) add(samples_[i]);
     return after < kGain * before;
   }
 
@@ -138,6 +151,7 @@ class EdgeTurner {
   std::span<const std::uint8_t> fixed_;  // by vertex
   std::vector<std::uint8_t> taken_;  // by face
   std::vector<std::pair<Index, Index>> added_;
+  std::vector<Quad> quads_;  // of the edge looked at: one in each sheet
 };
 
 }  // namespace

@@ -7,11 +7,14 @@
 #include <lodestone/lod/placement.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include <lodestone/lod/deviation.h>
 
@@ -64,15 +67,42 @@ std::vector<std::uint8_t> find_fixed(const Mesh& original, const Mesh& level,
   return fixed;
 }
 
+/// Leaves out faces that lie on another one, whichever way they face: what is nearest then has one direction.
+Mesh without_layers(const Mesh& mesh) {
+  using Place = std::array<float, 3>;
+  std::vector<std::pair<std::array<Place, 3>, Index>> faces;
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    std::array<Place, 3> places{};
+    for (Index k = 0; k < 3; ++k) {
+      const Vec3f& p = mesh.positions[mesh.corner_vertex(3 * f + k)];
+      places[k] = {p.x, p.y, p.z};
+    }
+    std::sort(places.begin(), places.end());
+    faces.emplace_back(places, f);
+  }
+  std::sort(faces.begin(), faces.end());
+  const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
+  faces.erase(std::unique(faces.begin(), faces.end(), same), faces.end());
+  std::vector<Index> kept;
+  for (const auto& [places, face] : faces) kept.push_back(face);
+  std::sort(kept.begin(), kept.end());
+  return pick_faces(mesh, kept);
+}
+
+bool has_layers(const std::vector<MeshEdge>& edges) {
+  return std::any_of(edges.begin(), edges.end(), [](const MeshEdge& edge) { return !edge.layers.empty(); });
+}
+
 class Fitting {
  public:
   Fitting(const Mesh& original, Mesh& level, const PlacementOptions& options)
       : level_(level),
         options_(options),
         is_fine_(static_cast<double>(level.face_count()) >= kFineShare * static_cast<double>(original.face_count())),
-        guard_(original),
-        fixed_(find_fixed(original, level, options.fixed)),
         edges_(list_edges(level)),
+        skin_(has_layers(edges_) ? without_layers(original) : Mesh{}),
+        guard_(has_layers(edges_) ? skin_ : original),
+        fixed_(find_fixed(original, level, options.fixed)),
         samples_(original, options.samples_per_face * level.face_count()),
         lines_(original) {
     classify();
@@ -94,10 +124,11 @@ class Fitting {
   Mesh& level_;
   const PlacementOptions& options_;
   bool is_fine_;
+  std::vector<MeshEdge> edges_;
+  Mesh skin_;  // the original as the guard sees it, where sheets lie on one another
   OriginalGuard guard_;
   std::vector<std::uint8_t> fixed_;  // by vertex
   SampleNorm norm_;
-  std::vector<MeshEdge> edges_;
   SurfaceSamples samples_;
   LineSamples lines_;
   std::vector<Index> corner_vertex_;

@@ -88,6 +88,17 @@ inline std::set<Place> open_places(const Mesh& mesh) {
   return places;
 }
 
+inline std::set<Index> vertices_of(const Mesh& mesh, Index face) {
+  return {mesh.corner_vertex(3 * face), mesh.corner_vertex(3 * face + 1), mesh.corner_vertex(3 * face + 2)};
+}
+
+/// Returns whether each of a mesh's faces is there `count` times, wherever it faces.
+inline bool is_layered(const Mesh& mesh, std::size_t count) {
+  std::map<std::set<Index>, std::size_t> faces;
+  for (Index f = 0; f < mesh.face_count(); ++f) ++faces[vertices_of(mesh, f)];
+  return std::all_of(faces.begin(), faces.end(), [&](const auto& entry) { return entry.second == count; });
+}
+
 /// Twice the signed area of a face in the first texture.
 inline double texture_area(const Mesh& mesh, Index face) {
   const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
