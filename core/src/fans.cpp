@@ -1,7 +1,8 @@
 // Cutting and stitching after Guéziec, Taubin, Lazarus, Horn: Cutting and stitching: converting sets of polygons to
 // manifold surfaces (IEEE Transactions on Visualization and Computer Graphics 7, 2001): at an edge of many faces they
 // are stitched in pairs again, so that what was drawn as a sheet is one. Which two belong together is told, in this
-// order, by material, by wedges, by how flat they meet and, where sheets coincide, by what they are joined to elsewhere.
+// order, by material, by wedges, by how flat they meet and, where sheets coincide, by what they are joined to
+// elsewhere.
 
 #include "fans.h"
 
@@ -57,9 +58,8 @@ std::vector<HalfEdge> sorted_edges(const Mesh& mesh) {
     const std::uint64_t b = mesh.corner_vertex(next_corner(c));
     edges[c] = {a < b ? a << 32 | b : b << 32 | a, c, a < b};
   }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.key != b.key ? a.key < b.key : a.corner < b.corner;
-  });
+  std::sort(edges.begin(), edges.end(),
+            [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.corner < b.corner; });
   return edges;
 }
 
@@ -137,13 +137,14 @@ SheetFinder::SheetFinder(const Mesh& mesh)
   join_layers(crowded);
 }
 
-/// Cuts where sheets lie on one another and a face is folded back onto its neighbour: that is the border of both sheets.
+/// Cuts where sheets lie on one another and a face is folded back onto its neighbour: that is the border of both
+/// sheets.
 void SheetFinder::cut_folds() {
   for (Index c = 0; c < across_.size(); ++c) {
     const Index other = across_[c];
     if (other == kNoIndex || other < c) continue;
     const bool layered = is_layered(mesh_.corner_vertex(c)) || is_layered(mesh_.corner_vertex(other));
-    layered && lies_on(c, other) ? cut(c) : sheets_.join(face_of_corner(c), face_of_corner(other));
+    layered&& lies_on(c, other) ? cut(c) : sheets_.join(face_of_corner(c), face_of_corner(other));
   }
 }
 

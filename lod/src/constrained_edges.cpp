@@ -21,8 +21,8 @@ bool is_free(const Mesh& mesh, Index a, Index b) {
 // At an edge of more faces than these nobody drew sheets; it is a line.
 constexpr std::size_t kMostFacesAtEdge = 32;
 
-/// Pairs each face on one side of an edge with a neighbour on the other. Leaves the edge as it is where there are no two
-/// sides, or some face has no neighbour: then it is a line of some sheet.
+/// Pairs each face on one side of an edge with a neighbour on the other. Leaves the edge as it is where there are no
+/// two sides, or some face has no neighbour: then it is a line of some sheet.
 void pair_corners(const Mesh& mesh, std::span<const HalfEdge> halves, MeshEdge& edge) {
   std::vector<Index> left, right;
   const auto side = [&](Index corner) { return mesh.corner_vertex(corner); };

@@ -7,13 +7,13 @@
 
 namespace lodestone::detail {
 
-/// An edge of a mesh: its faces' corners that face it, where there are two that agree; else kNoIndex. Where sheets lie on
-/// one another it has two such corners in each.
+/// An edge of a mesh: its faces' corners that face it, where there are two that agree; else kNoIndex. Where sheets lie
+/// on one another it has two such corners in each.
 struct MeshEdge {
   std::array<Index, 2> vertices{};
   std::array<Index, 2> corners{kNoIndex, kNoIndex};
   std::vector<std::array<Index, 2>> layers;  ///< the corners in further sheets
-  bool constrained = false;  ///< border, seam, material border, or faces on more sides than two
+  bool constrained = false;                  ///< border, seam, material border, or faces on more sides than two
 };
 
 /// Lists the edges of any mesh, sorted by their vertices. Unlike `Connectivity` it takes meshes that are not manifold.

@@ -1,6 +1,6 @@
-// Removal of the copies of a vertex at which sheets meet or lie on one another. A vertex that moves to a neighbour takes
-// whatever lies there along: faces that coincide go on coinciding. Holes that are filled alike keep that, too, and are
-// filled as well as those of a single sheet.
+// Removal of the copies of a vertex at which sheets meet or lie on one another. A vertex that moves to a neighbour
+// takes whatever lies there along: faces that coincide go on coinciding. Holes that are filled alike keep that, too,
+// and are filled as well as those of a single sheet.
 
 #include <algorithm>
 #include <array>
@@ -120,8 +120,8 @@ Index RemovalEvaluator::widest_copy(Index vertex) {
   }
 }
 
-/// Lists the sites that a face joins with the vertex and the target, in any sheet. As that face goes, the edges from both
-/// to the site become one.
+/// Lists the sites that a face joins with the vertex and the target, in any sheet. As that face goes, the edges from
+/// both to the site become one.
 void RemovalEvaluator::gather_shared_ends(Index vertex, Index target_site) {
   const Connectivity& mesh = state_->connectivity;
   shared_ends_.clear();
@@ -158,8 +158,8 @@ Evaluation RemovalEvaluator::evaluate_copies_at(Index vertex, Index target_site,
   }
 }
 
-/// Whether one of the star's faces would come to lie on another face, and face the same way, as the vertex moves along a
-/// spoke. That the two sides of a leaf come to lie on one another is as well.
+/// Whether one of the star's faces would come to lie on another face, and face the same way, as the vertex moves along
+/// a spoke. That the two sides of a leaf come to lie on one another is as well.
 bool RemovalEvaluator::falls_onto_face(std::size_t target) const {
   for (std::size_t i = 0; i < fine_corner_.size(); ++i) {
     const std::size_t j = (i + 1) % ring_size();

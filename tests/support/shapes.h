@@ -77,8 +77,8 @@ TriangleSoup bow_tie();
 TriangleSoup three_at_one_edge();
 /// Two neighbours with opposite winding.
 TriangleSoup disagreeing_pair();
-/// Some of the squares of a cubic lattice of n³ points, cut along either diagonal and facing either way, some twice: edges
-/// of many faces, folds, faces back to back.
+/// Some of the squares of a cubic lattice of n³ points, cut along either diagonal and facing either way, some twice:
+/// edges of many faces, folds, faces back to back.
 TriangleSoup random_squares(int n, std::uint64_t seed);
 /// A grid with degenerate, duplicate and non-finite triangles and an unused point added.
 TriangleSoup dirty_grid(int n);

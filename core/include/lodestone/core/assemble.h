@@ -20,7 +20,7 @@ struct TriangleSoup {
 struct AssemblyReport {
   std::size_t nonfinite_faces = 0;    ///< dropped: a corner is NaN or infinite
   std::size_t degenerate_faces = 0;   ///< dropped: two corners at one position
-  std::size_t duplicate_faces = 0;    ///< dropped: same as an earlier one in corners, winding, material and all attributes
+  std::size_t duplicate_faces = 0;    ///< dropped: corners, winding, material and attributes of an earlier one
   std::size_t unused_points = 0;      ///< dropped: no triangle uses them
   std::size_t nonmanifold_edges = 0;  ///< cut: more than two triangles, or two that disagree on winding
   std::size_t cut_vertices = 0;       ///< vertices that became several, one for each sheet
