@@ -181,6 +181,20 @@ TEST_CASE("obj: what is missing or has no place is named, once") {
   CHECK_THAT(all_notes(folder.read("y.obj").notes), contains("not beside or below"));
 }
 
+TEST_CASE("mtl: bumps in colour are normals, and that is said; grey ones are heights, which are left out") {
+  const Folder folder;
+  folder.write("normals.png", png("n"));
+  folder.write("heights.png", png("h", 0));
+  folder.write("a.mtl", "newmtl m\nbump normals.png\nnewmtl h\nmap_bump heights.png\n");
+  folder.write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl m\n" + kFace + "usemtl h\n" + kFace);
+  const MeshFile file = folder.read("a.obj");
+  CHECK(file.materials.at(0).normal_texture);
+  CHECK_FALSE(file.materials.at(1).normal_texture);
+  CHECK_THAT(all_notes(file.notes),
+             contains("taken for maps of normals: normals.png") && contains("left out: map_bump"));
+  CHECK(folder.glb("a.obj").json["images"].size() == 1);
+}
+
 TEST_CASE("mtl: statements in glTF's model") {
   CHECK(material_of("Ns 0\n").roughness == Approx(1));
   CHECK(material_of("Ns 1000\nKs 1 1 1\n").roughness == Approx(0.2113).margin(1e-3));

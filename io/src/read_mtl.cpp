@@ -301,6 +301,7 @@ class MaterialLibraries::Converter {
     }
     material_.normal_texture = texture;
     material_.normal_scale = bumps->multiplier;
+    libraries_.bumps_.insert(bumps->file);
   }
 
   MaterialLibraries& libraries_;
@@ -363,6 +364,8 @@ Material MaterialLibraries::material(const std::string& name) {
 void MaterialLibraries::finish() {
   if (!unknown_.empty())
     file_.notes.push_back(text("materials that no library at hand describes are plain: ", list_of(unknown_)));
+  if (!bumps_.empty())
+    file_.notes.push_back(text("bump maps in colour are taken for maps of normals: ", list_of(bumps_)));
   if (!left_out_.empty())
     file_.notes.push_back(
         text("statements of materials that glTF has no place for are left out: ", list_of(left_out_)));

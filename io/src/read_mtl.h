@@ -50,6 +50,7 @@ class MaterialLibraries {
   std::map<std::string, Entry> entries_;
   std::vector<std::string> unknown_;
   std::set<std::string> left_out_;  ///< keywords
+  std::set<std::string> bumps_;     ///< images in colour
 };
 
 /// Cuts off a comment; a '#' inside a word is part of a name.

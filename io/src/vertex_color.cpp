@@ -9,6 +9,7 @@ namespace lodestone::detail {
 namespace {
 
 constexpr double kLargest = 65535;
+constexpr float kBrightest = 2;  // of colours that end at 1; rounding and bright light take some beyond
 
 /// What is not a number is black.
 double clamped(double value) { return value > 0 ? std::min(value, 1.0) : 0; }
@@ -33,7 +34,7 @@ Attribute color_attribute(std::span<const float> srgb, std::uint8_t component_co
 }
 
 float color_range(std::span<const float> components) {
-  return std::any_of(components.begin(), components.end(), [](float c) { return c > 1; }) ? 255.0F : 1.0F;
+  return std::any_of(components.begin(), components.end(), [](float c) { return c > kBrightest; }) ? 255.0F : 1.0F;
 }
 
 std::uint8_t srgb_byte(float linear) {
