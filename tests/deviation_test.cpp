@@ -171,6 +171,96 @@ bool overlap(const Deviation& a, const Deviation& b) {
   return a.maximum() <= b.maximum_bound() + 1e-12 && b.maximum() <= a.maximum_bound() + 1e-12;
 }
 
+/// The mesh turned so that none of its directions is an axis', and made longer along one of them before.
+Mesh turned(Mesh mesh, double stretch = 1) {
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  for (Vec3f& p : mesh.positions) {
+    const Vec3 q(p.x, p.y, p.z * stretch);
+    const double x = q.x * c - q.y * s, y = q.x * s + q.y * c;
+    p = {static_cast<float>(x), static_cast<float>(y * c - q.z * s), static_cast<float>(y * s + q.z * c)};
+  }
+  return mesh;
+}
+
+/// A bar whose sides are strips of `n` parts; on two sides each strip is two fans around its ends.
+Mesh fanned_bar(int n) {
+  std::vector<Vec3f> positions;
+  std::vector<Index> corners;
+  for (int i = 0; i <= n; ++i) {
+    for (int k = 0; k < 4; ++k) positions.push_back({k == 1 || k == 2 ? 1.0f : 0.0f, k > 1 ? 1.0f : 0.0f, static_cast<float>(i)});
+  }
+  const auto at = [](int k, int i) { return static_cast<Index>(4 * i + k % 4); };
+  for (int k = 0; k < 4; ++k) {
+    const bool fans = k % 2 == 0;
+    for (int i = 0; i < n; ++i) {
+      corners.insert(corners.end(), {at(k, i), at(k, i + 1), at(k + 1, fans ? n : i)});
+      corners.insert(corners.end(), {at(k, fans ? 0 : i + 1), at(k + 1, i + 1), at(k + 1, i)});
+    }
+  }
+  return turned(raw_mesh(std::move(positions), std::move(corners)));
+}
+
+/// A disc triangulated from one end to the other as its outline goes round.
+Mesh zigzag_disc(int n) {
+  std::vector<Vec3f> positions;
+  std::vector<Index> corners;
+  for (int i = 0; i < n; ++i) {
+    positions.push_back({static_cast<float>(std::cos(6.283 * i / n)), static_cast<float>(std::sin(6.283 * i / n)), 0});
+  }
+  for (int low = 0, high = n - 1; high - low > 1; (low + high) % 2 == 0 ? ++low : --high) {
+    const int next = (low + high) % 2 == 0 ? low + 1 : high - 1;
+    for (const int v : {low, next, high}) corners.push_back(static_cast<Index>(v));
+  }
+  return turned(raw_mesh(std::move(positions), std::move(corners)));
+}
+
+/// The mesh several times over, each time moved up by `step`.
+Mesh stacked(const Mesh& mesh, int count, float step) {
+  std::vector<Vec3f> positions;
+  std::vector<Index> corners;
+  for (int i = 0; i < count; ++i) {
+    const Index first = static_cast<Index>(positions.size());
+    for (const Vec3f& p : mesh.positions) positions.push_back({p.x, p.y, p.z + step * static_cast<float>(i)});
+    for (Index c = 0; c < mesh.corner_wedge.size(); ++c) corners.push_back(first + mesh.corner_vertex(c));
+  }
+  return raw_mesh(std::move(positions), std::move(corners));
+}
+
+/// The mesh, one triangle more at the end.
+Mesh with_triangle(const Mesh& mesh, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  std::vector<Vec3f> positions = mesh.positions;
+  std::vector<Index> corners;
+  for (Index corner = 0; corner < mesh.corner_wedge.size(); ++corner) corners.push_back(mesh.corner_vertex(corner));
+  for (const Vec3f& p : {a, b, c}) {
+    corners.push_back(static_cast<Index>(positions.size()));
+    positions.push_back(p);
+  }
+  return raw_mesh(std::move(positions), std::move(corners));
+}
+
+/// The mesh and as many segments along its edges as it has faces.
+Mesh with_segments(const Mesh& mesh) {
+  std::vector<Index> corners;
+  for (Index c = 0; c < mesh.corner_wedge.size(); ++c) corners.push_back(mesh.corner_vertex(c));
+  for (Index c = 0; c < mesh.corner_wedge.size(); c += 3) {
+    corners.insert(corners.end(), {corners[c], corners[c + 1], corners[c + 1]});
+  }
+  return raw_mesh(mesh.positions, std::move(corners));
+}
+
+/// How many nodes and faces a query visits on average, over points on a mesh or a share of `size` away from it.
+double mean_visits(const Mesh& mesh, double distance) {
+  constexpr std::size_t kQueries = 3000;
+  const SurfaceIndex index(mesh);
+  double sum = 0;
+  for (std::size_t i = 0; i < kQueries; ++i) {
+    const Index face = static_cast<Index>(i * mesh.face_count() / kQueries);
+    const Vec3 p = point_on_face(mesh, face, i) + normalized(area_vector(mesh, face)) * distance;
+    sum += static_cast<double>(index.nearest(p, kInfinity).visits);
+  }
+  return sum / kQueries;
+}
+
 }  // namespace
 
 TEST_CASE("the nearest point is that of all faces, whatever the scale and the hint") {
@@ -210,6 +300,37 @@ TEST_CASE("equally near faces: the lowest is named") {
       CHECK(hit.distance == 0);
       CHECK(hit.face <= f);
     }
+  }
+}
+
+TEST_CASE("a query costs about as much whatever the shape of the faces is and wherever they are") {
+  const Mesh terrain_mesh = mesh_of(terrain(64, 1));  // The well-shaped one, of as many faces as the others.
+  const double terrain_size = bounding_box(terrain_mesh).diagonal();
+  const std::vector<std::pair<std::string, Mesh>> meshes = {
+      {"cone", turned(mesh_of(fan(8000, 0.2)))},
+      {"flat fan", turned(mesh_of(fan(8000, 0)))},
+      {"rod", turned(mesh_of(cylinder(4000, 1)), 20)},
+      {"spindle", turned(mesh_of(double_cone(4000)), 20)},
+      {"fanned bar", fanned_bar(1000)},
+      {"zigzag disc", zigzag_disc(8000)},
+      {"eight in one place", stacked(mesh_of(terrain(23, 1)), 8, 0)},
+      {"eight close together", stacked(mesh_of(terrain(23, 1)), 8, 1e-3f)},
+      {"far from the origin", shifted(scaled(terrain_mesh, 1e3), 5e5f, 5e6f, 0)},
+      {"segments", with_segments(mesh_of(terrain(45, 1)))},
+  };
+  // These are looked at as closely as without their last face.
+  const std::vector<std::pair<std::string, Mesh>> unlike = {
+      {"a far outlier", with_triangle(terrain_mesh, {1e7f, 0, 0}, {1e7f, 1, 0}, {1e7f, 0, 1})},
+      {"a triangle under all", with_triangle(terrain_mesh, {1e4f, 0, -1}, {1e4f, 1e4f, -1}, {-1e4f, -1e4f, -1})},
+  };
+  for (const double share : {0.0, 1e-4, 1e-3}) {
+    const double limit = 12 * mean_visits(terrain_mesh, share * terrain_size);
+    const auto check = [&](const std::string& name, const Mesh& mesh, double size) {
+      INFO(name << ", " << share << " away");
+      CHECK(mean_visits(mesh, share * size) < limit);
+    };
+    for (const auto& [name, mesh] : meshes) check(name, mesh, bounding_box(mesh).diagonal());
+    for (const auto& [name, mesh] : unlike) check(name, mesh, terrain_size);
   }
 }
 

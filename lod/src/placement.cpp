@@ -145,10 +145,11 @@ void Fitting::classify() {
 /// Finds the face nearest to each sample.
 void Fitting::assign() {
   const SurfaceIndex surface(level_);
+  Index last = kNoIndex;  // Samples that follow each other are mostly neighbours.
   for (SurfaceSample& sample : samples_.all()) {
-    const SurfaceIndex::Hit hit =
-        surface.nearest(sample.position, std::numeric_limits<double>::infinity(), sample.face);
-    sample.place_on(level_, hit.face);
+    const Index hint = sample.face != kNoIndex ? sample.face : last;
+    last = surface.nearest(sample.position, std::numeric_limits<double>::infinity(), hint).face;
+    sample.place_on(level_, last);
   }
 }
 

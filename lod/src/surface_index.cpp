@@ -1,11 +1,12 @@
-// A packed R-tree in the order of a k-d tree: faces are halved by the median of their centroids along the longest axis
-// (Bentley, "Multidimensional binary search trees used for associative searching", CACM 18(9), 1975), at multiples of
-// powers of four, so that runs of four fill the nodes of an implicit four-wide tree without pointers (as in Kamel and
-// Faloutsos, "On packing R-trees", CIKM 1993). The search is Roussopoulos, Kelley and Vincent's ("Nearest neighbor
+// A packed R-tree over faces in a compact order, of which runs of four fill the nodes of an implicit four-wide tree
+// without pointers (as in Kamel and Faloutsos, "On packing R-trees", CIKM 1993). The boxes lie along the principal axes
+// of what they hold, as those of Gottschalk, Lin and Manocha ("OBBTree", SIGGRAPH 1996): boxes along the mesh's axes
+// would all overlap where faces are long and thin. The search is Roussopoulos, Kelley and Vincent's ("Nearest neighbor
 // queries", SIGMOD 1995), depth first and nearest child first.
 //
-// Boxes are floats in a scale of their own where coordinates lie within [-1, 1]; they are grown by more than the
-// rounding of their arithmetic, so that what they prune is certainly too far. Distances to triangles are doubles.
+// Boxes are floats in coordinates of their node, whose origin is in the midst of them, so that they are as fine as the
+// node is small, wherever the mesh lies and however large the rest of it is. They are grown by more than the rounding
+// of all that, so that what they prune is certainly too far. Everything is computed with in doubles.
 
 #include <algorithm>
 #include <array>
@@ -13,57 +14,77 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <lodestone/lod/deviation.h>
 
+#include "face_order.h"
+#include "point_spread.h"
 #include "triangle.h"
 
 namespace lodestone {
 namespace {
 
+using detail::PointSpread;
 using detail::Triangle;
 
-constexpr std::size_t kWidth = 4;
-constexpr float kBoxSlack = 1e-6f;      // Absolute, of the unit scale: four times the rounding at coordinates of 1.
-constexpr double kFarSlack = 1 + 4e-6;  // Relative, of squared distances: for points far outside the unit box.
-constexpr float kFarthest = 1e9f;       // Coordinates of points are clamped here: their squares stay finite.
-constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each of at most 17 levels.
+constexpr std::size_t kWidth = detail::kRunWidth;
+constexpr double kBoxSlack = 2e-7;       // Of the largest coordinate in a node: more than the rounding of boxes there.
+constexpr double kFarSlack = 1 + 1e-12;  // Relative, of squared distances: for points far outside a node.
+constexpr std::size_t kMostLevels = 17;
+constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each level.
 
 /// A box by its centre and half size along each axis; the default contains nothing.
 struct CentredBox {
-  float centre[3] = {0, 0, 0};
-  float half[3] = {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-                   -std::numeric_limits<float>::infinity()};
+  double centre[3] = {0, 0, 0};
+  double half[3] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                   -std::numeric_limits<double>::infinity()};
+};
+
+using Local = std::array<double, 3>;
+
+/// Coordinates relative to an origin, along axes and in units of their own.
+struct Frame {
+  Vec3f origin;
+  std::array<Vec3, 3> axes;  // The mesh's, in local coordinates.
+
+  Local local(const Vec3& p) const {
+    const Vec3 d = p - Vec3(origin);
+    const Vec3 q = axes[0] * d.x + axes[1] * d.y + axes[2] * d.z;
+    return {q.x, q.y, q.z};
+  }
 };
 
 /// The boxes of four children, transposed for arithmetic on four lanes.
-struct Node {
+struct alignas(64) Node {
+  Frame frame;
   float centre[3][kWidth];
   float half[3][kWidth];
 
   void set(std::size_t child, const CentredBox& box) {
     for (int axis = 0; axis < 3; ++axis) {
-      centre[axis][child] = box.centre[axis];
-      half[axis][child] = box.half[axis];
+      centre[axis][child] = static_cast<float>(box.centre[axis]);
+      half[axis][child] = static_cast<float>(box.half[axis]);
     }
   }
 };
 
 /// Twice how far `x` lies outside an interval. The sum of t and |t| needs no comparison, which the compiler would not
 /// turn into lanes.
-float twice_outside(float centre, float half, float x) {
-  const float t = std::fabs(x - centre) - half;
+double twice_outside(float centre, float half, double x) {
+  const double t = std::fabs(x - static_cast<double>(centre)) - static_cast<double>(half);
   return t + std::fabs(t);
 }
 
 /// Four times the squared distances of a point to the boxes of a node.
-std::array<float, kWidth> box_distances(const Node& node, const std::array<float, 3>& p) {
-  std::array<float, kWidth> result;
+std::array<double, kWidth> box_distances(const Node& node, const Local& p) {
+  std::array<double, kWidth> result;
   for (std::size_t i = 0; i < kWidth; ++i) {
-    const float x = twice_outside(node.centre[0][i], node.half[0][i], p[0]);
-    const float y = twice_outside(node.centre[1][i], node.half[1][i], p[1]);
-    const float z = twice_outside(node.centre[2][i], node.half[2][i], p[2]);
+    const double x = twice_outside(node.centre[0][i], node.half[0][i], p[0]);
+    const double y = twice_outside(node.centre[1][i], node.half[1][i], p[1]);
+    const double z = twice_outside(node.centre[2][i], node.half[2][i], p[2]);
     result[i] = x * x + y * y + z * z;
   }
   return result;
@@ -71,60 +92,79 @@ std::array<float, kWidth> box_distances(const Node& node, const std::array<float
 
 /// A box by its extremes, grown by uniting.
 struct Extent {
-  std::array<float, 3> low;
-  std::array<float, 3> high;
+  Local low;
+  Local high;
 
   Extent() {
-    low.fill(std::numeric_limits<float>::infinity());
-    high.fill(-std::numeric_limits<float>::infinity());
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
   }
-  void add(const std::array<float, 3>& p) {
+  void add(const Local& p) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = std::min(low[axis], p[axis]);
       high[axis] = std::max(high[axis], p[axis]);
     }
   }
-  void add(const Extent& other) {
-    add(other.low);
-    add(other.high);
+  bool empty() const { return high[0] < low[0]; }
+  double half_area() const {
+    if (empty()) return 0;
+    const double x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+    return x * y + y * z + z * x;
   }
-  std::size_t longest_axis() const {
-    std::size_t axis = 0;
-    for (std::size_t i = 1; i < 3; ++i) {
-      if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
-    }
-    return axis;
+  double largest_coordinate() const {
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 3 && !empty(); ++axis) largest = std::max({largest, -low[axis], high[axis]});
+    return largest;
   }
-  CentredBox centred() const {
+  CentredBox centred(double slack) const {
     CentredBox box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.centre[axis] = 0.5f * (low[axis] + high[axis]);
-      box.half[axis] = 0.5f * (high[axis] - low[axis]) + kBoxSlack;
+    for (std::size_t axis = 0; axis < 3 && !empty(); ++axis) {
+      box.centre[axis] = 0.5 * (low[axis] + high[axis]);
+      box.half[axis] = 0.5 * (high[axis] - low[axis]) + slack;
     }
     return box;
   }
 };
 
-/// A face on its way to its place in the tree.
-struct Entry {
-  std::array<float, 3> centroid;
-  Index face;
+/// The extents of the four children of a node in one frame.
+using ChildExtents = std::array<Extent, kWidth>;
+
+double half_area(const ChildExtents& children) {
+  double sum = 0;
+  for (const Extent& child : children) sum += child.half_area();
+  return sum;
+}
+
+/// What is known of a run of triangles without looking at each.
+struct Run {
+  PointSpread spread;
+  Extent box;  // Along the mesh's axes.
+
+  void add(const Vec3f& corner) {
+    spread.add({1, Vec3(corner), {}});
+    box.add({double{corner.x}, double{corner.y}, double{corner.z}});
+  }
+  void add(const Run& other) {
+    spread.add(other.spread);
+    box.add(other.box.low);
+    box.add(other.box.high);
+  }
 };
 
-/// Orders entries so that every run of 4^k, counted from the start, is compact. Pre: size ≤ capacity, a power of two.
-void order_by_medians(Entry* begin, Entry* end, std::size_t capacity) {
-  const std::size_t size = static_cast<std::size_t>(end - begin);
-  if (size <= kWidth) return;
-  while (capacity >= size) capacity /= 2;
-  Extent extent;
-  for (const Entry* e = begin; e != end; ++e) extent.add(e->centroid);
-  const std::size_t axis = extent.longest_axis();
-  Entry* middle = begin + capacity;
-  std::nth_element(begin, middle, end, [axis](const Entry& a, const Entry& b) {
-    return a.centroid[axis] != b.centroid[axis] ? a.centroid[axis] < b.centroid[axis] : a.face < b.face;
-  });
-  order_by_medians(begin, middle, capacity);
-  order_by_medians(middle, end, capacity);
+Run run_of(const Triangle& triangle) {
+  Run run;
+  for (const Vec3f& corner : {triangle.a, triangle.b, triangle.c}) run.add(corner);
+  return run;
+}
+
+Vec3 point(const Local& p) { return {p[0], p[1], p[2]}; }
+
+Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
+
+/// `axes` in the mesh's coordinates; `scale` is what lengths are multiplied by.
+Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes, double scale) {
+  const Vec3 u = axes[0] * scale, v = axes[1] * scale, w = axes[2] * scale;
+  return {origin, {Vec3{u.x, v.x, w.x}, Vec3{u.y, v.y, w.y}, Vec3{u.z, v.z, w.z}}};
 }
 
 }  // namespace
@@ -135,14 +175,15 @@ struct SurfaceIndex::Impl {
   std::vector<Index> places;             // The triangle of each face.
   std::vector<Node> nodes;               // Level by level from the triangles up; node i has the children 4i … 4i + 3.
   std::vector<std::size_t> level_begin;  // The first node of each level.
-  double scale = 1;                      // From mesh units to the boxes' units: a power of two.
+  double scale = 1;                      // A power of two, which makes the mesh's box about 1 large.
 
   void set_scale(const Mesh& mesh);
   void order_faces(const Mesh& mesh);
   void build_nodes();
-  std::vector<Extent> add_level(const std::vector<Extent>& children);
-  std::array<float, 3> scaled(const Vec3f& p) const { return scaled(Vec3(p)); }
-  std::array<float, 3> scaled(const Vec3& p) const;
+  template <class RunAt>
+  void add_level(std::size_t child_size, std::size_t child_count, const RunAt& run_at, std::vector<Run>& runs);
+  Node make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children, const Run& all) const;
+  ChildExtents child_extents(const Frame& frame, std::size_t begin, std::size_t child_size) const;
 };
 
 namespace {
@@ -151,12 +192,13 @@ namespace {
 class Search {
  public:
   Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit)
-      : tree_(tree), p_(p), scaled_p_(tree.scaled(p)), best_squared_(limit * limit) {
+      : tree_(tree), p_(p), best_squared_(limit * limit) {
     hit_.distance = std::numeric_limits<double>::infinity();
     update_reach();
   }
 
   void test(std::size_t place) {
+    ++hit_.visits;
     const Vec3 q = detail::nearest_on_triangle(p_, tree_.triangles[place]);
     const double squared = squared_length(p_ - q);
     const Index face = tree_.faces[place];
@@ -172,11 +214,7 @@ class Search {
     while (size_ > 0) {
       const Item item = stack_[--size_];
       if (item.distance > reach_) continue;
-      if (item.level == 0) {
-        test(item.place);
-      } else {
-        open(item);
-      }
+      open(item);
     }
   }
 
@@ -188,18 +226,21 @@ class Search {
 
  private:
   struct Item {
-    float distance;       // Four times the squared distance of the box.
-    std::uint32_t level;  // 0: a triangle.
+    double distance;      // Four times the squared distance of the box.
+    std::uint32_t level;  // Of the node, from 1 on.
     Index place;          // On its level.
   };
 
   void open(const Item& item) {
+    ++hit_.visits;
     const std::uint32_t level = item.level - 1;
-    const std::array<float, kWidth> distances =
-        box_distances(tree_.nodes[tree_.level_begin[level] + item.place], scaled_p_);
+    const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
+    const std::array<double, kWidth> distances = box_distances(node, node.frame.local(p_));
     const std::size_t base = size_;
     for (std::uint32_t i = 0; i < kWidth; ++i) {
-      if (distances[i] <= reach_) push({distances[i], level, static_cast<Index>(kWidth * item.place + i)}, base);
+      if (!(distances[i] <= reach_)) continue;
+      const Index place = static_cast<Index>(kWidth * item.place + i);
+      level == 0 ? test(place) : push({distances[i], level, place}, base);
     }
   }
 
@@ -211,16 +252,16 @@ class Search {
     stack_[i] = item;
   }
 
+  /// Finite, so that boxes that contain nothing stay out of it.
   void update_reach() {
-    const double scaled = std::min(4 * best_squared_ * tree_.scale * tree_.scale * kFarSlack, 1e30);
-    reach_ = static_cast<float>(scaled);
+    const double scaled = 4 * best_squared_ * tree_.scale * tree_.scale * kFarSlack;
+    reach_ = std::min(scaled, std::numeric_limits<double>::max());
   }
 
   const SurfaceIndex::Impl& tree_;
   Vec3 p_;
-  std::array<float, 3> scaled_p_;
   double best_squared_;
-  float reach_ = 0;
+  double reach_ = 0;
   SurfaceIndex::Hit hit_;
   std::size_t size_ = 0;
   std::array<Item, kStackSize> stack_;
@@ -228,72 +269,90 @@ class Search {
 
 }  // namespace
 
-std::array<float, 3> SurfaceIndex::Impl::scaled(const Vec3& p) const {
-  const auto clamped = [this](double x) {
-    return static_cast<float>(std::clamp(x * scale, -double{kFarthest}, double{kFarthest}));
-  };
-  return {clamped(p.x), clamped(p.y), clamped(p.z)};
-}
-
 void SurfaceIndex::Impl::set_scale(const Mesh& mesh) {
-  float largest = 0;
-  for (const Vec3f& p : mesh.positions) {
-    largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-  }
-  if (!(largest > 0) || !std::isfinite(largest)) return;
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  scale = std::ldexp(1.0, -exponent);
+  const double size = bounding_box(mesh).diagonal();
+  if (size > 0 && std::isfinite(size)) scale = std::ldexp(1.0, -std::ilogb(size));
 }
 
 void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
-  const std::size_t count = mesh.face_count();
-  std::vector<Entry> entries(count);
-  for (std::size_t f = 0; f < count; ++f) {
-    const Triangle t = detail::triangle_of(mesh, static_cast<Index>(f));
-    const Vec3 sum = Vec3(t.a) + Vec3(t.b) + Vec3(t.c);
-    entries[f] = {scaled(sum * (1.0 / 3.0)), static_cast<Index>(f)};
-  }
-  std::size_t capacity = 1;
-  while (capacity < count) capacity *= 2;
-  order_by_medians(entries.data(), entries.data() + count, capacity);
-
-  triangles.resize(count);
-  faces.resize(count);
-  places.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Index f = entries[i].face;
-    triangles[i] = detail::triangle_of(mesh, f);
-    faces[i] = f;
-    places[f] = static_cast<Index>(i);
+  std::vector<Triangle> all(mesh.face_count());
+  for (Index f = 0; f < all.size(); ++f) all[f] = detail::triangle_of(mesh, f);
+  faces = detail::compact_order(all);
+  places.resize(faces.size());
+  for (const Index f : faces) {
+    places[f] = static_cast<Index>(triangles.size());
+    triangles.push_back(all[f]);
   }
 }
 
 void SurfaceIndex::Impl::build_nodes() {
-  std::vector<Extent> extents(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    extents[i].add(scaled(triangles[i].a));
-    extents[i].add(scaled(triangles[i].b));
-    extents[i].add(scaled(triangles[i].c));
-  }
+  nodes.reserve(triangles.size() / (kWidth - 1) + kMostLevels);
+  std::vector<Run> runs;
+  std::size_t child_size = 1;
+  std::size_t child_count = triangles.size();
   do {
-    extents = add_level(extents);
-  } while (extents.size() > 1);
+    const std::vector<Run> below = std::exchange(runs, {});
+    add_level(child_size, child_count, [&](std::size_t i) { return child_size > 1 ? below[i] : run_of(triangles[i]); },
+              runs);
+    child_size *= kWidth;
+    child_count = runs.size();
+  } while (child_count > 1);
 }
 
-/// Appends the nodes above `children` and returns their extents.
-std::vector<Extent> SurfaceIndex::Impl::add_level(const std::vector<Extent>& children) {
-  const std::size_t count = (children.size() + kWidth - 1) / kWidth;
-  const std::size_t first = nodes.size();
-  level_begin.push_back(first);
-  nodes.resize(first + count);
-  std::vector<Extent> parents(count);
-  for (std::size_t i = 0; i < kWidth * count; ++i) {
-    const bool present = i < children.size();
-    nodes[first + i / kWidth].set(i % kWidth, present ? children[i].centred() : CentredBox{});
-    if (present) parents[i / kWidth].add(children[i]);
+/// Appends the nodes above runs of `child_size` triangles each, and their own runs to `runs`.
+template <class RunAt>
+void SurfaceIndex::Impl::add_level(std::size_t child_size, std::size_t child_count, const RunAt& run_at,
+                                   std::vector<Run>& runs) {
+  level_begin.push_back(nodes.size());
+  runs.reserve((child_count + kWidth - 1) / kWidth);
+  std::vector<Run> children;
+  for (std::size_t first = 0; first < child_count; first += kWidth) {
+    children.clear();
+    Run all;
+    for (std::size_t i = first; i < std::min(first + kWidth, child_count); ++i) {
+      children.push_back(run_at(i));
+      all.add(children.back());
+    }
+    nodes.push_back(make_node(first * child_size, child_size, children, all));
+    runs.push_back(all);
   }
-  return parents;
+}
+
+/// Makes the node of the triangles from `begin` on, along those axes that leave the smaller boxes.
+Node SurfaceIndex::Impl::make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children,
+                                   const Run& all) const {
+  Node node;
+  const Vec3f origin = rounded(all.spread.mean);
+  node.frame = make_frame(origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale);
+  ChildExtents extents;
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    extents[i].add(node.frame.local(point(children[i].box.low)));
+    extents[i].add(node.frame.local(point(children[i].box.high)));
+  }
+  const Frame turned = make_frame(origin, all.spread.principal_axes(), scale);
+  const ChildExtents turned_extents = child_extents(turned, begin, child_size);
+  if (half_area(turned_extents) < half_area(extents)) {
+    node.frame = turned;
+    extents = turned_extents;
+  }
+  double largest = 0;
+  for (const Extent& extent : extents) largest = std::max(largest, extent.largest_coordinate());
+  const double slack = kBoxSlack * largest + static_cast<double>(std::numeric_limits<float>::min());
+  for (std::size_t i = 0; i < kWidth; ++i) node.set(i, extents[i].centred(slack));
+  return node;
+}
+
+ChildExtents SurfaceIndex::Impl::child_extents(const Frame& frame, std::size_t begin, std::size_t child_size) const {
+  ChildExtents extents;
+  for (std::size_t child = 0; child < kWidth; ++child) {
+    const std::size_t end = std::min(begin + (child + 1) * child_size, triangles.size());
+    for (std::size_t i = begin + child * child_size; i < end; ++i) {
+      for (const Vec3f& corner : {triangles[i].a, triangles[i].b, triangles[i].c}) {
+        extents[child].add(frame.local(Vec3(corner)));
+      }
+    }
+  }
+  return extents;
 }
 
 SurfaceIndex::SurfaceIndex(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
@@ -307,6 +366,10 @@ SurfaceIndex::~SurfaceIndex() = default;
 SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
 SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 
+// Wider vectors give the same numbers: there is no fused multiply-add (see LodestoneTarget).
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx2", "default"), flatten))
+#endif
 SurfaceIndex::Hit SurfaceIndex::nearest(const Vec3& p, double limit, Index hint) const {
   Search search(*impl_, p, limit);
   if (empty()) return search.result();
