@@ -167,7 +167,8 @@ TEST_CASE("draco holds shapes of any size") {
     CHECK(encoding.layout.notes.empty());
     CHECK(asset.levels[0].draco);
     CHECK(asset.levels[0].mesh.face_count() == levels[0].mesh.face_count());
-    CHECK(farthest_vertex(levels[0].mesh, asset.levels[0].mesh, 1e9 * size) <= 1.001 * encoding.layout.quantisation_error);
+    CHECK(farthest_vertex(levels[0].mesh, asset.levels[0].mesh, 1e9 * size) <=
+          1.001 * encoding.layout.quantisation_error);
     CHECK(encoding.layout.quantisation_error < 1e-4 * 2 * size);
   }
 }
@@ -182,13 +183,14 @@ TEST_CASE("draco keeps thin, long and small shapes from collapsing, and says wha
     const TriangleSoup small = icosphere(1, 0, 1);
     const auto first = static_cast<Index>(soup.positions.size());
     for (const Vec3f& p : small.positions)
-      soup.positions.push_back({3 + p.x * static_cast<float>(size), p.y * static_cast<float>(size), p.z * static_cast<float>(size)});
+      soup.positions.push_back(
+          {3 + p.x * static_cast<float>(size), p.y * static_cast<float>(size), p.z * static_cast<float>(size)});
     for (const Index i : small.indices) soup.indices.push_back(first + i);
     return soup;
   };
-  for (const TriangleSoup& soup : {stretched(grid(5, 0, 1), 1e-5, 1), stretched(grid(5, 0, 1), 3e-7, 1),
-                                   stretched(icosphere(2, 0, 1), 1e-5, 1e-5), stretched(cylinder(16, 40), 2e-5, 2e-5),
-                                   beside_small(1e-4), beside_small(1e-5)}) {
+  for (const TriangleSoup& soup :
+       {stretched(grid(5, 0, 1), 1e-5, 1), stretched(grid(5, 0, 1), 3e-7, 1), stretched(icosphere(2, 0, 1), 1e-5, 1e-5),
+        stretched(cylinder(16, 40), 2e-5, 2e-5), beside_small(1e-4), beside_small(1e-5)}) {
     std::vector<AssetLevel> levels(1);
     levels[0].mesh = mesh_of(soup);
     const EncodedAsset encoding = encoded(levels, {});
@@ -245,18 +247,24 @@ TEST_CASE("draco keeps whatever is data exactly, and texture coordinates by the 
         farthest = std::max(farthest, std::abs(double{value[i]} - double{found.at(place).at(i)}));
     return farthest;
   };
-  const auto anything = [&](double scale) { return [&random, scale](std::size_t) { return scale * (random.unit() - 0.5); }; };
-  const auto whole = [&](double scale) { return [&random, scale](std::size_t) { return std::floor(scale * random.unit()); }; };
+  const auto anything = [&](double scale) {
+    return [&random, scale](std::size_t) { return scale * (random.unit() - 0.5); };
+  };
+  const auto whole = [&](double scale) {
+    return [&random, scale](std::size_t) { return std::floor(scale * random.unit()); };
+  };
   for (const double scale : {2.0, 1000.0, 70000.0, 8e6, 1.6e7, 1e9})
     CHECK(farthest_value(with_floats("_FEATURE_ID_0", 1, whole(scale))) == 0);
   CHECK(farthest_value(with_floats("_BATCHID", 1, [](std::size_t i) { return i == 7 ? -1.0 : 5e6 + double(i); })) == 0);
   CHECK(farthest_value(with_floats("_TEMPERATURE", 3, anything(40))) == 0);
-  CHECK(farthest_value(with_floats("_SENTINEL", 1, [](std::size_t i) { return i % 5 == 0 ? -9999 : 0.1 * double(i); })) == 0);
+  CHECK(farthest_value(
+            with_floats("_SENTINEL", 1, [](std::size_t i) { return i % 5 == 0 ? -9999 : 0.1 * double(i); })) == 0);
   CHECK(farthest_value(with_floats("TEXCOORD_0", 2, [](std::size_t i) { return double(i % 65) / 64; })) == 0);
   for (const double range : {0.3, 1.0, 10.0, 1000.0, 1e5, 1e30})
     CHECK(farthest_value(with_floats("TEXCOORD_0", 2, [&](std::size_t i) { return i == 9 ? range : random.unit(); })) <=
           1.0 / 4095);
-  CHECK(farthest_value(with_floats("COLOR_0", 3, [&](std::size_t i) { return i == 9 ? 200.0 : random.unit(); })) <= 1.0 / 1023);
+  CHECK(farthest_value(with_floats("COLOR_0", 3, [&](std::size_t i) { return i == 9 ? 200.0 : random.unit(); })) <=
+        1.0 / 1023);
 }
 
 TEST_CASE("what draco cannot predict it encodes in another way") {

@@ -178,7 +178,8 @@ TEST_CASE("errors that are asked for count quantisation") {
     const Json report = shop.read_report();
     const Json &level = report["levels"][1], &deviation = level["deviation"];
     CHECK(level["target_met"] == true);
-    const double largest = std::max(deviation["forward"]["max"].get<double>(), deviation["backward"]["max"].get<double>());
+    const double largest =
+        std::max(deviation["forward"]["max"].get<double>(), deviation["backward"]["max"].get<double>());
     CHECK(largest <= level["target"]["error"].get<double>() + 1e-12);
   }
   SECTION("with bits that are too few, the error cannot be met") {
@@ -236,12 +237,15 @@ TEST_CASE("inspect and build count alike, in the same units") {
   const Json report = shop.read_report(), before = Shop::inspected(in), after = Shop::inspected(shop.glb);
   for (const char* count : {"faces", "vertices"}) CHECK(before[count] == report["input"][count]);
   CHECK(before["bounding_box"] == report["input"]["bounding_box"]);
-  CHECK(after["diagonal"].get<double>() == test::Approx(report["input"]["bounding_box"]["diagonal"].get<double>()).epsilon(1e-3));
+  CHECK(after["diagonal"].get<double>() ==
+        test::Approx(report["input"]["bounding_box"]["diagonal"].get<double>()).epsilon(1e-3));
   for (std::size_t i = 0; i < 3; ++i) {
-    for (const char* count : {"faces", "vertices", "bytes"}) CHECK(after["levels"][i][count] == report["levels"][i][count]);
+    for (const char* count : {"faces", "vertices", "bytes"})
+      CHECK(after["levels"][i][count] == report["levels"][i][count]);
     const Json& deviation = report["levels"][i]["deviation"];
-    CHECK(after["levels"][i]["deviation"]["max"].get<double>() ==
-          test::Approx(std::max(deviation["forward"]["max"].get<double>(), deviation["backward"]["max"].get<double>())));
+    CHECK(
+        after["levels"][i]["deviation"]["max"].get<double>() ==
+        test::Approx(std::max(deviation["forward"]["max"].get<double>(), deviation["backward"]["max"].get<double>())));
   }
   CHECK_THAT(run.out, contains("%"));
   CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("%"));
@@ -261,7 +265,8 @@ TEST_CASE("the bytes of a .gltf are those of all its files") {
   const std::string text = file.json.dump();
   write_text(shop.folder / "in.gltf", text);
   const Json inspected = Shop::inspected((shop.folder / "in.gltf").string());
-  CHECK(inspected["bytes"] == text.size() + file.buffers[0].size() + std::filesystem::file_size(shop.folder / "image.png"));
+  CHECK(inspected["bytes"] ==
+        text.size() + file.buffers[0].size() + std::filesystem::file_size(shop.folder / "image.png"));
   CHECK(Shop::inspected(in)["bytes"] == std::filesystem::file_size(in));
 }
 

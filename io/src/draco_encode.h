@@ -58,8 +58,8 @@ struct DracoPrimitive {
 };
 
 /// Compresses a mesh. Float attributes are quantised in their grids, integers are kept exactly.
-/// `compression_level` is 0 to 10. Pre: values on a grid are finite; there are faces; wedges and vertices stand in the order of
-/// their first use. Errors: Unsupported with Draco's reason.
+/// `compression_level` is 0 to 10. Pre: values on a grid are finite; there are faces; wedges and vertices stand in the
+/// order of their first use. Errors: Unsupported with Draco's reason.
 Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& grids, const DracoCoding& coding,
                                     int compression_level);
 

@@ -173,7 +173,8 @@ std::vector<std::string> note_left_out(const GltfDocument& document, const Primi
   };
   note(omissions.points_and_lines, "primitive of points or lines", "primitives of points or lines");
   note(omissions.morph_targets, "morph target", "morph targets");
-  note(document.count("skins"), "skin", "skins", ", with joints and weights; skinned meshes stand in the pose of their nodes");
+  note(document.count("skins"), "skin", "skins",
+       ", with joints and weights; skinned meshes stand in the pose of their nodes");
   note(document.count("animations"), "animation", "animations");
   note(document.count("textures"), "texture", "textures");
   note(document.count("materials"), "material", "materials", "; faces keep apart by material");

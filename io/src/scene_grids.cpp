@@ -21,10 +21,10 @@ constexpr int kMinWeightBits = 12;  // A joint's error grows with the distance o
 // Draco rounds by adding a half to a float: with more bits, that half is lost.
 constexpr int kMostExactBits = 23;
 
-// A face narrower than so many steps no longer has the direction it had; on the average of the area, it must.
+// Faces only a few steps wide no longer have the directions they had: so many, on the average of the area.
 constexpr double kStepsPerFace = 10;
-// So many faces may be smaller than a step before the grid has to be finer for them.
-constexpr double kCollapsedShare = 0.02;
+// Nearly all edges keep so many steps; the grid need not be finer for a small share of faces, which often are slivers.
+constexpr double kStepsPerEdge = 4, kSmallerShare = 0.02;
 
 /// Returns the fewest bits whose grid of such a range has steps of at most `step`.
 int bits_for_step(double range, double step) {
@@ -51,8 +51,7 @@ class GridFitter {
   double range() const {
     double range = finite_ ? 0 : HUGE_VAL;
     for (std::size_t c = 0; c < low_.size(); ++c)
-      if (low_[c] <= high_[c])
-        range = std::max(range, static_cast<double>(high_[c]) - static_cast<double>(low_[c]));
+      if (low_[c] <= high_[c]) range = std::max(range, static_cast<double>(high_[c]) - static_cast<double>(low_[c]));
     return range;
   }
 
@@ -162,8 +161,7 @@ Result<void> check_reach(const PositionGrid& given, std::span<const std::vector<
                                                " from the grid's origin, more than ", kMostSteps));
 }
 
-/// Returns the longest step that a mesh keeps its shape on: nearly all faces keep their corners apart, and the faces
-/// that make up the area their directions.
+/// Returns the longest step that a mesh keeps its shape on.
 double step_for_shape(const Mesh& mesh) {
   std::vector<double> shortest;
   double lengths = 0, doubled_area = 0;
@@ -178,9 +176,10 @@ double step_for_shape(const Mesh& mesh) {
   double step = HUGE_VAL;
   if (doubled_area > 0) step = doubled_area / lengths / kStepsPerFace;
   if (shortest.empty()) return step;
-  const auto rank = shortest.begin() + static_cast<std::ptrdiff_t>(kCollapsedShare * static_cast<double>(shortest.size()));
+  const auto rank =
+      shortest.begin() + static_cast<std::ptrdiff_t>(kSmallerShare * static_cast<double>(shortest.size()));
   std::nth_element(shortest.begin(), rank, shortest.end());
-  return std::min(step, *rank);
+  return std::min(step, *rank / kStepsPerEdge);
 }
 
 /// Returns the meshes' numbers by ascending scale.
@@ -258,8 +257,8 @@ namespace lodestone {
 std::vector<double> quantisation_errors(const Scene& scene, const AssetOptions& options) {
   std::vector<double> errors(scene.meshes().size());
   if (!options.draco) return errors;
-  const auto grids = detail::fit_positions(
-      scene, options, [&](std::size_t mesh, const auto& add) { add(scene.meshes()[mesh].mesh); });
+  const auto grids =
+      detail::fit_positions(scene, options, [&](std::size_t mesh, const auto& add) { add(scene.meshes()[mesh].mesh); });
   for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = grids[i].point_error();
   return errors;
 }

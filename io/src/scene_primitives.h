@@ -30,9 +30,9 @@ struct WrittenLevel {
   std::vector<std::size_t> sources;  ///< which primitive of the document's mesh each of them was
   std::uint64_t face_count = 0;
   std::uint64_t vertex_count = 0;
-  std::uint64_t byte_count = 0;  ///< of its geometry
+  std::uint64_t byte_count = 0;            ///< of its geometry
   std::uint64_t collapsed_face_count = 0;  ///< two of whose corners Draco's grid has put at one place
-  Mesh decoded;                  ///< as clients get it, with the source's columns; only where `measure` will see it
+  Mesh decoded;                    ///< as clients get it, with the source's columns; only where `measure` will see it
   std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each
 };
 
