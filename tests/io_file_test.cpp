@@ -71,6 +71,37 @@ TEST_CASE("reading what is not there or no file names path and reason") {
   CHECK_THAT(folder.error().message, contains("directory"));
 }
 
+TEST_CASE("a symbolic link is followed and stays a link") {
+  namespace fs = std::filesystem;
+  const ScratchDirectory scratch;
+  fs::create_directory(scratch / "folder");
+  fs::create_symlink("folder/file", scratch / "relative");
+  fs::create_symlink(scratch / "relative", scratch / "chain");
+  for (const char* link : {"relative", "chain"}) {
+    for (const char* text : {"new", "replaced"}) {
+      CAPTURE(link, text);
+      REQUIRE(write_file(scratch / link, bytes_of(text)));
+      CHECK(fs::is_symlink(scratch / link));
+      CHECK(*read_file(scratch.path() / "folder" / "file") == bytes_of(text));
+      CHECK(fs::equivalent(follow_links(scratch / link).value(), scratch.path() / "folder" / "file"));
+    }
+    fs::remove(scratch.path() / "folder" / "file");
+  }
+  fs::create_symlink("round", scratch / "round");
+  CHECK(write_file(scratch / "round", bytes_of("x")).error().code == ErrorCode::NotWritten);
+  CHECK(file_count(scratch.path()) == 4);
+}
+
+TEST_CASE("the longest name that a folder takes can be written") {
+  const ScratchDirectory scratch;
+  const std::string longest(255, 'n');
+  REQUIRE(write_file(scratch / longest, bytes_of("x")));
+  CHECK(*read_file(scratch / longest) == bytes_of("x"));
+  CHECK(file_count(scratch.path()) == 1);
+  CHECK(write_file(scratch / (longest + "n"), bytes_of("x")).error().code == ErrorCode::NotWritten);
+  CHECK(file_count(scratch.path()) == 1);
+}
+
 TEST_CASE("devices are written through, not replaced") {
   REQUIRE(write_file("/dev/null", bytes_of("x")));
   CHECK(std::filesystem::is_character_file("/dev/null"));

@@ -168,6 +168,44 @@ TEST_CASE("output that cannot be written exits with 4 and leaves nothing") {
   CHECK(names_in(folder.path()) == Names{"folder.glb", "sphere.obj"});
 }
 
+TEST_CASE("a folder that takes no files is found out before the work") {
+  const ScratchDirectory folder;
+  const std::string missing = (folder / "missing.obj").string();
+  LODESTONE_SKIP_UNLESS(std::filesystem::exists("/proc/self"), "no folder here that takes no files");
+  // The input does not exist either: that it is not what the error names shows what was looked at first.
+  for (const Names& arguments : {Names{"build", missing, "-o", "/proc/out.glb"},
+                                 Names{"extract", missing, "-o", "/proc/out.glb", "--error", "0"},
+                                 Names{"compare", missing, missing, "--html", "/proc/out.html"}}) {
+    CAPTURE(arguments);
+    const ProgramRun run = run_program(arguments);
+    check_error(run, 4);
+    CHECK_THAT(run.err, contains("/proc/out."));
+  }
+}
+
+TEST_CASE("an output that is a symbolic link is written where it leads") {
+  const ScratchDirectory folder;
+  const std::string in = write_sphere(folder).string();
+  std::filesystem::create_directory(folder / "store");
+  std::filesystem::create_symlink("store/real.glb", folder / "out.glb");
+  for (int i = 0; i < 2; ++i) {
+    REQUIRE(run_program({"build", in, "-o", (folder / "out.glb").string()}).exit_code == 0);
+    CHECK(std::filesystem::is_symlink(folder / "out.glb"));
+    CHECK(names_in(folder / "store") == Names{"real.glb"});
+  }
+}
+
+TEST_CASE("names may be as long as the folder takes, and no longer") {
+  const ScratchDirectory folder;
+  const std::string in = write_sphere(folder).string();
+  const std::string longest = std::string(251, 'n') + ".glb";
+  CHECK(run_program({"build", in, "-o", (folder / longest).string()}).exit_code == 0);
+  CHECK(names_in(folder.path()) == Names{longest, "sphere.obj"});
+  const ProgramRun run = run_program({"build", "missing", "-o", (folder / ("n" + longest)).string()});
+  check_error(run, 4);
+  CHECK_THAT(run.err, contains("too long"));
+}
+
 TEST_CASE("a report that fails leaves an earlier output as it was") {
   LODESTONE_SKIP_UNLESS(std::filesystem::exists("/dev/full"), "no /dev/full here");
   const ScratchDirectory folder;

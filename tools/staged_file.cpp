@@ -7,46 +7,80 @@
 #include <lodestone/io/file.h>
 
 #include "messages.h"
+#include "standard_streams.h"
 
 namespace lodestone::tool {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A name beside the destination that no other run uses at the same time; the destination itself if it is a device.
-fs::path staged_name(const fs::path& destination) {
+/// A name that no other run uses at the same time.
+fs::path staged_name(const fs::path& target) {
+  return stand_in_name(target, ".staged-" + std::to_string(std::random_device{}()));
+}
+
+/// Messages name the file the user asked for, not its stand-in.
+Error naming(Error error, const fs::path& stand_in, const fs::path& destination) {
+  const std::size_t begin = error.message.find(stand_in.string());
+  if (begin != std::string::npos) error.message.replace(begin, stand_in.string().size(), destination.string());
+  return error;
+}
+
+/// A device cannot be replaced by a file, nor can what reads at the other end of a pipe.
+bool takes_bytes_directly(const fs::path& path) {
   std::error_code ignored;
-  if (fs::is_other(destination, ignored)) return destination;
-  fs::path name = destination;
-  name.replace_filename(std::string(".").append(destination.filename().string()) + ".staged-" +
-                        std::to_string(std::random_device{}()));
-  return name;
+  return is_standard_stream(path) || fs::is_other(path, ignored);
+}
+
+Result<void> check_is_no_folder(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    return fail(ErrorCode::NotWritten, "cannot write " + quoted(path) + ": it is a folder");
+  }
+  [[maybe_unused]] const fs::file_status status = fs::symlink_status(path, error);
+  if (error == std::errc::filename_too_long) {
+    return fail(ErrorCode::NotWritten, "cannot write " + quoted(path) + ": " + error.message());
+  }
+  return {};
+}
+
+/// Rights, quotas and read-only file systems say no in many ways; only a file that was made shows that none does.
+Result<void> try_to_write_beside(const fs::path& target, const fs::path& destination) {
+  const fs::path trial = staged_name(target);
+  Result<void> written = write_file(trial, {});
+  std::error_code ignored;
+  fs::remove(trial, ignored);
+  return written.map_error([&](Error error) { return naming(std::move(error), trial, destination); });
 }
 
 }  // namespace
 
-StagedFile::StagedFile(fs::path destination)
-    : destination_(std::move(destination)), staged_(staged_name(destination_)) {}
+StagedFile::StagedFile(fs::path destination) : destination_(std::move(destination)) {}
 
 StagedFile::~StagedFile() {
   std::error_code ignored;
-  if (staged_ != destination_) fs::remove(staged_, ignored);
+  if (!staged_.empty()) fs::remove(staged_, ignored);
 }
 
 Result<void> StagedFile::write(std::span<const std::byte> bytes) {
+  if (is_standard_stream(destination_)) return write_standard_output(bytes);
+  if (takes_bytes_directly(destination_)) return write_file(destination_, bytes);
+  if (Result<void> place = check_is_no_folder(destination_); !place) return place;
+  Result<fs::path> target = follow_links(destination_);
+  if (!target) return tl::unexpected(target.error());
+  target_ = std::move(*target);
+  staged_ = staged_name(target_);
   return write_file(staged_, bytes).map_error([&](Error error) {
-    // Messages name the file the user asked for, not its stand-in.
-    const std::size_t begin = error.message.find(staged_.string());
-    if (begin != std::string::npos) error.message.replace(begin, staged_.string().size(), destination_.string());
-    return error;
+    return naming(std::move(error), staged_, destination_);
   });
 }
 
 Result<void> StagedFile::commit() {
-  if (staged_ == destination_) return {};
+  if (staged_.empty()) return {};
   std::error_code error;
-  fs::rename(staged_, destination_, error);
+  fs::rename(staged_, target_, error);
   if (error) return fail(ErrorCode::NotWritten, "cannot write " + quoted(destination_) + ": " + error.message());
+  staged_.clear();
   return {};
 }
 
@@ -66,16 +100,17 @@ Result<void> StagedFiles::commit() {
 }
 
 Result<void> check_destination(const fs::path& path) {
+  if (takes_bytes_directly(path)) return {};
+  if (Result<void> place = check_is_no_folder(path); !place) return place;
+  const Result<fs::path> target = follow_links(path);
+  if (!target) return tl::unexpected(target.error());
   std::error_code error;
-  if (fs::is_directory(path, error)) {
-    return fail(ErrorCode::NotWritten, "cannot write " + quoted(path) + ": it is a folder");
-  }
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path folder = target->has_parent_path() ? target->parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
     return fail(ErrorCode::NotWritten,
                 "cannot write " + quoted(path) + ": the folder " + quoted(folder) + " does not exist");
   }
-  return {};
+  return try_to_write_beside(*target, path);
 }
 
 }  // namespace lodestone::tool

@@ -14,7 +14,8 @@ namespace lodestone::tool {
 /// A file that is written in full beside its destination and takes its place only on `commit`.
 ///
 /// Commands with several outputs stage all of them and commit at the end: a failure before that leaves every
-/// destination as it was. A device or pipe cannot be replaced by a file: it is written directly, on `write`.
+/// destination as it was. A symbolic link stays, what it leads to is replaced. The standard output (`-`), devices and
+/// pipes cannot be replaced: they are written directly, on `write`.
 class StagedFile {
  public:
   explicit StagedFile(std::filesystem::path destination);
@@ -29,8 +30,9 @@ class StagedFile {
   Result<void> commit();
 
  private:
-  std::filesystem::path destination_;
-  std::filesystem::path staged_;
+  std::filesystem::path destination_;  // as the user names it
+  std::filesystem::path target_;       // where its links lead
+  std::filesystem::path staged_;       // empty where nothing waits to be moved
 };
 
 /// Files that appear together, once all of them are written.
@@ -46,8 +48,9 @@ class StagedFiles {
   std::vector<std::unique_ptr<StagedFile>> files_;
 };
 
-/// Checks, before the long work starts, that a file can be put at `path`.
-/// Errors: NotWritten where its folder does not exist, or where it is a folder itself.
+/// Checks, before the long work starts, that a file can be put at `path`, by making one beside it for a moment.
+/// Errors: NotWritten where its folder does not exist or cannot be written to, where its name is too long, or where it
+/// is a folder itself.
 Result<void> check_destination(const std::filesystem::path& path);
 
 }  // namespace lodestone::tool

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "text.h"
+#include "try.h"
 
 namespace lodestone {
 namespace {
@@ -18,6 +19,8 @@ namespace {
 using detail::text;
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
+constexpr int kMostLinks = 40;                   // where Linux gives up, too
+constexpr std::size_t kKeptBytesOfAName = 100;  // with the tag, below the 255 of most file systems and the 143 of some
 
 std::string system_reason(int error) { return std::generic_category().message(error); }
 
@@ -84,8 +87,7 @@ struct TemporaryFile {
 TemporaryFile open_temporary(const std::filesystem::path& path) {
   TemporaryFile file;
   for (int serial = 0; serial < 1000; ++serial) {
-    file.name = path;
-    file.name.replace_filename(text('.', path.filename(), '.', ::getpid(), '-', serial, ".tmp"));
+    file.name = stand_in_name(path, text('.', ::getpid(), '-', serial, ".tmp"));
     file.fd = ::open(file.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file.fd >= 0 || errno != EEXIST) break;
   }
@@ -125,12 +127,30 @@ Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
 
 Result<void> write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   if (is_special(path)) return write_through(path, bytes);
-  const TemporaryFile temporary = open_temporary(path);
+  LODESTONE_TRY(const std::filesystem::path target, follow_links(path));
+  const TemporaryFile temporary = open_temporary(target);
   if (temporary.fd < 0) return not_written(path, errno);
-  const int error = write_flush_rename(Descriptor(temporary.fd), temporary.name, path, bytes);
+  const int error = write_flush_rename(Descriptor(temporary.fd), temporary.name, target, bytes);
   if (error == 0) return {};
   ::unlink(temporary.name.c_str());
   return not_written(path, error);
+}
+
+Result<std::filesystem::path> follow_links(const std::filesystem::path& path) {
+  std::filesystem::path target = path;
+  for (int i = 0; i < kMostLinks; ++i) {
+    std::error_code error;
+    if (!std::filesystem::is_symlink(target, error)) return target;
+    const std::filesystem::path next = std::filesystem::read_symlink(target, error);
+    if (error) return not_written(path, error.value());
+    target = target.parent_path() / next;  // which is `next` alone where that begins at the root
+  }
+  return not_written(path, ELOOP);
+}
+
+std::filesystem::path stand_in_name(const std::filesystem::path& path, std::string_view tag) {
+  std::filesystem::path name = path;
+  return name.replace_filename(text('.', path.filename().string().substr(0, kKeptBytesOfAName), tag));
 }
 
 }  // namespace lodestone
