@@ -97,13 +97,23 @@ void GlbBuilder::fill_free_slots(const char* array, const Json& filler) {
   if (list.empty()) document_.erase(array);
 }
 
-Result<std::vector<std::byte>> GlbBuilder::finish() {
+void GlbBuilder::close_document() {
   fill_free_slots("accessors", {{"componentType", 5126}, {"count", 1}, {"type", "SCALAR"}});
   fill_free_slots("bufferViews", {{"buffer", 0}, {"byteLength", 1}});
   if (binary_.empty() && document_.contains("bufferViews")) binary_.resize(4);
   document_.erase("buffers");
   if (!binary_.empty()) document_["buffers"] = Json::array({Json{{"byteLength", binary_.size()}}});
+}
+
+Result<std::vector<std::byte>> GlbBuilder::finish() {
+  close_document();
   return join_chunks(document_.dump(-1, ' ', false, Json::error_handler_t::replace), std::move(binary_));
+}
+
+GlbBuilder::SeparateFiles GlbBuilder::finish_separate(const std::string& binary_uri) {
+  close_document();
+  if (!binary_.empty()) document_["buffers"][0]["uri"] = binary_uri;
+  return {document_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", std::move(binary_)};
 }
 
 }  // namespace lodestone::detail

@@ -48,7 +48,16 @@ class GlbBuilder {
   /// Writes the file. Errors: LimitExceeded beyond the 4 GiB a .glb can hold.
   Result<std::vector<std::byte>> finish();
 
+  /// A .gltf and what is in the file beside it, which may be nothing.
+  struct SeparateFiles {
+    std::string json;
+    std::vector<std::byte> binary;
+  };
+  /// Writes the same as two files, the second under the URI given.
+  SeparateFiles finish_separate(const std::string& binary_uri);
+
  private:
+  void close_document();
   void fill_free_slots(const char* array, const Json& filler);
 
   Json document_;

@@ -22,10 +22,7 @@ namespace {
 
 using namespace detail;
 
-Result<GltfDocument> read_document(std::span<const std::byte> bytes) {
-  const auto fetch = [](const std::filesystem::path& path) -> Result<std::vector<std::byte>> {
-    return fail(ErrorCode::Unsupported, text("'", path, "' is a file of its own; an asset is one file"));
-  };
+Result<GltfDocument> read_document(std::span<const std::byte> bytes, const FileFetcher& fetch) {
   LODESTONE_TRY(GltfDocument document, GltfDocument::parse(bytes, fetch));
   LODESTONE_CHECK(check_required_extensions(document));
   return document;
@@ -155,10 +152,8 @@ Error with_path(Error error, const std::filesystem::path& path) {
   return error;
 }
 
-}  // namespace
-
-Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
-  LODESTONE_TRY(const GltfDocument document, read_document(bytes));
+Result<Asset> read_asset_of(std::span<const std::byte> bytes, const FileFetcher& fetch) {
+  LODESTONE_TRY(const GltfDocument document, read_document(bytes, fetch));
   LODESTONE_TRY(const std::size_t count, level_count(document));
   LODESTONE_TRY(const auto chains, lod_chains(document));
   Asset asset;
@@ -171,9 +166,26 @@ Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
   return asset;
 }
 
+}  // namespace
+
+Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
+  return read_asset_of(bytes, [](const std::filesystem::path& path) -> Result<std::vector<std::byte>> {
+    return fail(ErrorCode::Unsupported, text("'", path, "' is a file of its own, which bytes cannot reach"));
+  });
+}
+
 Result<Asset> read_asset(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  return read_asset_bytes(bytes).map_error([&](Error error) { return with_path(std::move(error), path); });
+  std::uint64_t beside_bytes = 0;
+  const auto fetch = [&](const std::filesystem::path& relative) {
+    auto file = read_file(path.parent_path() / relative);
+    if (file) beside_bytes += file->size();
+    return file;
+  };
+  auto asset = read_asset_of(bytes, fetch);
+  if (!asset) return tl::unexpected<Error>(with_path(std::move(asset).error(), path));
+  asset->total_bytes += beside_bytes;
+  return asset;
 }
 
 }  // namespace lodestone

@@ -20,6 +20,11 @@ using namespace detail;
 
 enum class Format { Gltf, Obj, Off, Ply, Stl, Other };
 
+/// Nothing in a binary STL says what it is but that its size fits its count, 50 bytes for each triangle.
+bool has_size_of_stl(std::span<const std::byte> bytes) {
+  return bytes.size() > 84 && (bytes.size() - 84) / 50 == load_u32(bytes, 80) && (bytes.size() - 84) % 50 == 0;
+}
+
 /// Goes by content where that is certain, then by extension, then by what the text looks like.
 Format detect_format(std::span<const std::byte> bytes, std::string_view extension) {
   const std::string_view start = without_byte_order_mark(as_text(bytes));
@@ -31,6 +36,7 @@ Format detect_format(std::span<const std::byte> bytes, std::string_view extensio
   if (extension == "ply") return Format::Ply;
   if (extension == "stl") return Format::Stl;
   if (!extension.empty()) return Format::Other;
+  if (has_size_of_stl(bytes)) return Format::Stl;
   if (start.starts_with("solid")) return Format::Stl;
   if (start.starts_with("OFF")) return Format::Off;
   const std::size_t first = start.find_first_not_of(" \t\r\n");

@@ -36,14 +36,14 @@ class UseFinder {
         accessors_(scene.document.count("accessors")),
         views_(scene.document.count("bufferViews")) {}
 
-  BufferPlan run() {
+  BufferPlan run(bool images_leave) {
     add_meshes();
     add_animations();
     for_each(json_, "skins",
              [&](const Json& skin) { accessors_.add(find_member(skin, "inverseBindMatrices"), false); });
     add_instancing();
     add_views_of_accessors();
-    for_each(json_, "images", [&](const Json& image) { views_.add(find_member(image, "bufferView"), false); });
+    for_each(json_, "images", [&](const Json& image) { views_.add(find_member(image, "bufferView"), images_leave); });
     return plan();
   }
 
@@ -171,7 +171,7 @@ void copy_overlapping(std::span<const PlacedView> views, GlbBuilder& builder) {
 
 }  // namespace
 
-BufferPlan plan_buffers(const Scene::Impl& scene) { return UseFinder(scene).run(); }
+BufferPlan plan_buffers(const Scene::Impl& scene, bool images_leave) { return UseFinder(scene).run(images_leave); }
 
 Result<void> copy_kept_views(const GltfDocument& document, const BufferPlan& plan, GlbBuilder& builder) {
   std::vector<PlacedView> plain;

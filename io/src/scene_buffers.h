@@ -15,7 +15,8 @@ struct BufferPlan {
   std::vector<std::size_t> kept_views;  ///< all others, which keep their numbers: an unknown extension may name them
 };
 
-BufferPlan plan_buffers(const Scene::Impl& scene);
+/// `images_leave`: images become files of their own.
+BufferPlan plan_buffers(const Scene::Impl& scene, bool images_leave);
 
 /// Copies the kept bufferViews into the new binary chunk, decompressed; ranges that overlap stay so.
 /// Errors: Malformed where a view does not lie in its buffer.

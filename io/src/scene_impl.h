@@ -54,6 +54,8 @@ struct Scene::Impl {
   std::vector<detail::Json> dropped_meshes;  ///< coarser levels that were taken out of the document
   std::vector<AssemblyReport> dropped;  ///< of meshes without a usable triangle
   std::vector<std::string> notes;
+  std::vector<std::filesystem::path> files;
+  bool in_metres = false;
   Box box;
 };
 

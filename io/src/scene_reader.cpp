@@ -100,16 +100,23 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
 
 enum class Levels { Refused, TakenOut };
 
-Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetcher& fetch, Levels levels) {
+Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetcher& fetch_any, Levels levels,
+                              std::size_t level = 0) {
   auto scene = std::make_shared<Scene::Impl>();
+  scene->in_metres = true;
+  const auto fetch = [&](const std::filesystem::path& relative) {
+    auto file = fetch_any(relative);
+    if (file) scene->files.push_back(relative);
+    return file;
+  };
   LODESTONE_TRY(scene->document, GltfDocument::parse(bytes, fetch));
   LODESTONE_CHECK(check_required_extensions(scene->document, "EXT_mesh_gpu_instancing"));
   if (levels == Levels::Refused) {
     LODESTONE_CHECK(refuse_levels(scene->document));
   } else {
-    LODESTONE_CHECK(take_out_levels(*scene));
+    LODESTONE_CHECK(take_out_levels(*scene, level));
   }
-  LODESTONE_CHECK(read_meshes(*scene, levels == Levels::TakenOut));
+  LODESTONE_CHECK(read_meshes(*scene, levels == Levels::TakenOut && level == 0));
   scene->images = fetch_images(scene->document, fetch, scene->notes);
   return Scene(std::move(scene));
 }
@@ -134,18 +141,22 @@ Result<Scene> Scene::read_bytes(std::span<const std::byte> bytes, const std::str
   return from_mesh(std::move(file), "mesh");
 }
 
-Result<Scene> Scene::read_multi_lod(const std::filesystem::path& path) {
+Result<Scene> Scene::read_multi_lod(const std::filesystem::path& path, std::size_t level) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  return read_multi_lod_bytes(bytes).map_error([&](Error error) { return with_path(std::move(error), path); });
+  return read_gltf_scene(bytes, files_beside(path), Levels::TakenOut, level).map_error([&](Error error) {
+    return with_path(std::move(error), path);
+  });
 }
 
-Result<Scene> Scene::read_multi_lod_bytes(std::span<const std::byte> bytes) {
-  return read_gltf_scene(bytes, nothing_beside, Levels::TakenOut);
+Result<Scene> Scene::read_multi_lod_bytes(std::span<const std::byte> bytes, std::size_t level) {
+  return read_gltf_scene(bytes, nothing_beside, Levels::TakenOut, level);
 }
 
 const std::vector<SceneMesh>& Scene::meshes() const { return impl_->meshes; }
 const std::vector<AssemblyReport>& Scene::dropped() const { return impl_->dropped; }
 const std::vector<std::string>& Scene::notes() const { return impl_->notes; }
 const Box& Scene::box() const { return impl_->box; }
+bool Scene::in_metres() const { return impl_->in_metres; }
+const std::vector<std::filesystem::path>& Scene::files() const { return impl_->files; }
 
 }  // namespace lodestone

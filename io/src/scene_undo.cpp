@@ -86,6 +86,44 @@ Result<void> take_out_chain(Json& document, const NodeChain& chain, ChannelMap& 
   return {};
 }
 
+Result<void> check_level(std::span<const NodeChain> chains, std::size_t level) {
+  std::size_t count = 1;
+  for (const NodeChain& chain : chains) count = std::max(count, chain.nodes.size());
+  if (level < count) return {};
+  return fail(ErrorCode::InvalidArgument,
+              text("level ", level, " does not exist: the file has levels 0 to ", count - 1));
+}
+
+/// Lets a holder name the first of all materials that are equal: a coarser level's is a copy of the document's.
+void name_first_material(const Json& materials, Json& holder) {
+  const auto own = size_member(holder, "material", "");
+  if (!own || *own >= materials.size()) return;
+  const auto first = std::find(materials.begin(), materials.end(), materials[*own]);
+  holder["material"] = static_cast<std::size_t>(first - materials.begin());
+}
+
+/// Gives the meshes of the finest nodes what a coarser level shows, nothing where that has nothing left.
+void put_level_first(Json& document, std::span<const NodeChain> chains, std::size_t level,
+                     std::vector<Json>& dropped) {
+  const Json materials = document.contains("materials") ? document["materials"] : Json::array();
+  std::set<std::size_t> replaced;
+  for (const NodeChain& chain : chains) {
+    Json& finest = document["nodes"][chain.nodes[0]];
+    const auto coarse = mesh_of(document["nodes"][chain.nodes[std::min(level, chain.nodes.size() - 1)]]);
+    const auto whole = mesh_of(finest);
+    if (!whole) continue;
+    if (!coarse || *coarse >= document["meshes"].size()) {
+      for (const char* key : {"mesh", "skin", "weights"}) finest.erase(key);
+    } else if (*whole < document["meshes"].size() && replaced.insert(*whole).second) {
+      Json& mesh = document["meshes"][*whole];
+      dropped.push_back(mesh);
+      mesh["primitives"] = document["meshes"][*coarse]["primitives"];
+      for (Json& primitive : mesh["primitives"])
+        for_each_material_holder(primitive, [&](Json& holder) { name_first_material(materials, holder); });
+    }
+  }
+}
+
 /// Drops the meshes that only coarser levels showed; they are the last of the document.
 void drop_meshes(Json& document, std::set<std::size_t> coarser, std::vector<Json>& dropped, ChannelMap& channels) {
   if (!document.contains("meshes")) return;
@@ -147,11 +185,13 @@ bool has_material_levels(const GltfDocument& document) {
 
 }  // namespace
 
-Result<void> take_out_levels(Scene::Impl& scene) {
+Result<void> take_out_levels(Scene::Impl& scene, std::size_t level) {
   Json& document = scene.document.edit();
   LODESTONE_TRY(const std::vector<NodeChain> chains, find_chains(scene.document));
+  LODESTONE_CHECK(check_level(chains, level));
   if (chains.empty()) return {};
   LODESTONE_CHECK(check_chains(document["nodes"], chains));
+  if (level > 0) put_level_first(document, chains, level, scene.dropped_meshes);
   std::set<std::size_t> coarser;
   std::size_t first = document["nodes"].size();
   for (const NodeChain& chain : chains) {

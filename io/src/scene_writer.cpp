@@ -12,6 +12,7 @@
 #include "scene_buffers.h"
 #include "scene_channels.h"
 #include "scene_extensions.h"
+#include "scene_files.h"
 #include "scene_grids.h"
 #include "scene_impl.h"
 #include "scene_levels.h"
@@ -87,7 +88,7 @@ class SceneWriter {
         range_(range),
         with_streams_(with_streams),
         options_(options),
-        plan_(plan_buffers(impl_)),
+        plan_(plan_buffers(impl_, !options.gltf_name.empty())),
         builder_(impl_.document.json(), plan_.free_slots),
         materials_(builder_),
         lower_meshes_(meshes.size()),
@@ -99,7 +100,7 @@ class SceneWriter {
       LODESTONE_CHECK(add_level(level));
       if (level + 1 < range_.count) continue;
       LODESTONE_CHECK(copy_kept_views(impl_.document, plan_, builder_));
-      embed_images(impl_.images, builder_);
+      LODESTONE_CHECK(place_images());
     }
     note_collapsed();
     if (options_.measure) measure_levels();
@@ -109,12 +110,35 @@ class SceneWriter {
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
       for (const std::size_t node : impl_.sources[mesh].nodes) add_nodes(mesh, node);
     move_channels();
-    LODESTONE_TRY(std::vector<std::byte> glb, builder_.finish());
-    layout_.total_bytes = glb.size();
-    return EncodedAsset{std::move(glb), std::move(layout_)};
+    return finish();
   }
 
  private:
+  Result<void> place_images() {
+    if (options_.gltf_name.empty()) {
+      embed_images(impl_.images, builder_);
+    } else {
+      LODESTONE_TRY(beside_, put_images_beside(impl_, options_.gltf_name, builder_));
+    }
+    return {};
+  }
+
+  Result<EncodedAsset> finish() {
+    EncodedAsset asset{{}, std::move(beside_), std::move(layout_)};
+    if (options_.gltf_name.empty()) {
+      LODESTONE_TRY(asset.glb, builder_.finish());
+    } else {
+      const std::string data = options_.gltf_name + ".bin";
+      GlbBuilder::SeparateFiles files = builder_.finish_separate(uri_of(data));
+      const auto json = std::as_bytes(std::span(files.json));
+      asset.glb.assign(json.begin(), json.end());
+      if (!files.binary.empty()) asset.beside.insert(asset.beside.begin(), {data, std::move(files.binary)});
+    }
+    asset.layout.total_bytes = asset.glb.size();
+    for (const AssetFile& file : asset.beside) asset.layout.total_bytes += file.bytes.size();
+    return asset;
+  }
+
   const AssetLevel& level_of(std::size_t mesh, std::size_t level) const {
     return meshes_[mesh].levels[range_.first + level];
   }
@@ -349,6 +373,7 @@ class SceneWriter {
   std::vector<std::vector<AssetLevel>> measured_;  // as decoded; only with options_.measure
   std::vector<Json> originals_;                    // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
+  std::vector<AssetFile> beside_;                  // images
   AssetLayout layout_;
   std::vector<std::uint64_t> collapsed_;  // faces of each level, all instances counted
 };

@@ -3,18 +3,19 @@
 #include <lodestone/io/file.h>
 
 #include "mesh_writers.h"
+#include "soup_file.h"
 #include "text.h"
 #include "try.h"
 
 namespace lodestone {
 
 Result<std::vector<std::byte>> write_mesh_bytes(const Mesh& mesh, const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension == ".obj" || extension == ".OBJ") return detail::to_obj(mesh);
-  if (extension == ".ply" || extension == ".PLY") return detail::to_ply(mesh);
-  if (extension == ".glb" || extension == ".GLB") return detail::to_glb(mesh, path.stem().string());
+  const std::string extension = detail::extension_of(path);
+  if (extension == "obj") return detail::to_obj(mesh);
+  if (extension == "ply") return detail::to_ply(mesh);
+  if (extension == "glb") return detail::to_glb(mesh, path.stem().string());
   return fail(ErrorCode::Unsupported, detail::text("cannot write '", path, "': the extension '", extension,
-                                                   "' is none of .obj, .ply and .glb"));
+                                                   "' is none of obj, ply and glb"));
 }
 
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh) {

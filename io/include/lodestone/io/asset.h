@@ -42,6 +42,9 @@ struct AssetOptions {
   /// Of tangents' range, of colours' and weights' unit. All other attributes are data, which Draco keeps exactly.
   int draco_generic_bits = 10;
   int draco_compression_level = 7;  ///< 0 to 10
+  /// Not empty: a .gltf of this name without its extension, its data in NAME.bin and its images as files beside it, in
+  /// place of a .glb.
+  std::string gltf_name;
   /// Called when all geometry is encoded, with each mesh's levels, finest first, as clients will decode them: sets
   /// their deviations, which the file then states. Unset: it states those given.
   std::function<void(std::span<std::vector<AssetLevel>> meshes)> measure;
@@ -60,12 +63,19 @@ struct AssetLayout {
   double quantisation_error = 0;  ///< the farthest Draco moves a vertex, world units; 0 without Draco
   int position_bits = 0;          ///< of the finest grid; 0 where positions are exact
   std::uint64_t stream_bytes = 0;
-  std::uint64_t total_bytes = 0;
+  std::uint64_t total_bytes = 0;   ///< of all files together
   std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each
 };
 
+/// A file that a .gltf refers to.
+struct AssetFile {
+  std::filesystem::path path;  ///< relative to the .gltf, beside or below it
+  std::vector<std::byte> bytes;
+};
+
 struct EncodedAsset {
-  std::vector<std::byte> glb;
+  std::vector<std::byte> glb;     ///< or the .gltf, where the options name one
+  std::vector<AssetFile> beside;  ///< of a .gltf
   AssetLayout layout;
 };
 

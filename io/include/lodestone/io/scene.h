@@ -42,11 +42,12 @@ class Scene {
   static Result<Scene> read(const std::filesystem::path& path);
   /// Reads the same from memory; `extension` as for `read_mesh_bytes`. Files beside it are out of reach.
   static Result<Scene> read_bytes(std::span<const std::byte> bytes, const std::string& extension);
-  /// Reads a multi-LOD .glb as the scene it was made of, its finest levels as the meshes, with their streams.
-  /// Errors: as `read`; Unsupported where another program made the levels.
-  static Result<Scene> read_multi_lod(const std::filesystem::path& path);
-  /// The same from memory.
-  static Result<Scene> read_multi_lod_bytes(std::span<const std::byte> bytes);
+  /// Reads a multi-LOD .glb or .gltf as the scene it was made of, the meshes as in one of its levels: 0 is the finest,
+  /// which comes with its streams. Errors: as `read`; Unsupported where another program made the levels,
+  /// InvalidArgument for a level that there is none of.
+  static Result<Scene> read_multi_lod(const std::filesystem::path& path, std::size_t level = 0);
+  /// The same from memory. Files beside it are out of reach.
+  static Result<Scene> read_multi_lod_bytes(std::span<const std::byte> bytes, std::size_t level = 0);
   /// Makes a scene of one node and its mesh, with the file's materials that faces use, and plain ones for numbers that
   /// it does not describe; 0 stands for none, or for a plain one where vertices have colours.
   static Result<Scene> from_mesh(MeshFile file, const std::string& name);
@@ -59,6 +60,10 @@ class Scene {
   const std::vector<std::string>& notes() const;
   /// The box of all instances in the world, skinned ones posed at rest; of size 0 where there are none.
   const Box& box() const;
+  /// Whether world units are metres: glTF says so, other formats say nothing.
+  bool in_metres() const;
+  /// The files beside it that were read, relative to its folder.
+  const std::vector<std::filesystem::path>& files() const;
 
   struct Impl;  ///< opaque
   explicit Scene(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
