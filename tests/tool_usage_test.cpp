@@ -1,5 +1,8 @@
 // What the program promises to scripts: exit codes, clean standard output, whole output or none.
 
+#include <algorithm>
+#include <regex>
+
 #include <lodestone/core/assemble.h>
 #include <lodestone/io/write_mesh.h>
 
@@ -7,6 +10,7 @@
 #include "support/data.h"
 #include "support/program.h"
 #include "support/shapes.h"
+#include "support/terminal.h"
 
 using namespace lodestone;
 using namespace lodestone::test;
@@ -235,6 +239,31 @@ TEST_CASE("a target that cannot be met is a warning, with --strict exit code 5")
   CHECK_FALSE(std::filesystem::exists(obj));
   CHECK(run_program({"extract", out, "-o", obj, "--faces", "1"}).exit_code == 0);
   CHECK(names_in(folder.path()) == Names{"out.glb", "sphere.obj", "x.obj"});
+}
+
+TEST_CASE("a terminal shows one bar for all the work, and how long the rest may take") {
+  const ScratchDirectory folder;
+  const std::string in = write_sphere(folder).string();
+  std::filesystem::copy(in, folder / "second.obj");
+  const Names arguments = {"build", in, (folder / "second.obj").string(), "-o", (folder / "out").string()};
+  const std::string shown = shown_on_terminal(arguments);
+  const std::regex bar(R"(\[#*\.*\] +([0-9]+)%(, [0-9]+ (s|min|h) left)?, (sphere|second)\.obj, [a-z ]+)");
+  std::vector<int> percents;
+  bool with_time = false;
+  for (std::sregex_iterator found(shown.begin(), shown.end(), bar); found != std::sregex_iterator(); ++found) {
+    percents.push_back(std::stoi((*found)[1]));
+    with_time |= (*found)[2].matched;
+  }
+  CAPTURE(shown);
+  REQUIRE(percents.size() >= 10);  // five steps of each
+  CHECK(with_time);
+  CHECK(std::is_sorted(percents.begin(), percents.end()));
+  CHECK(percents.front() == 0);
+  CHECK(percents.back() > 90);
+
+  Names quiet = arguments;
+  quiet.push_back("--quiet");
+  CHECK(shown_on_terminal(quiet).empty());
 }
 
 TEST_CASE("no file ends the program with a signal or without a message") {

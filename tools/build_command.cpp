@@ -1,21 +1,96 @@
 #include "build_command.h"
 
+#include <algorithm>
+#include <numeric>
+#include <system_error>
+
 #include <CLI/CLI.hpp>
 
+#include "build_output.h"
 #include "build_run.h"
+#include "messages.h"
+#include "staged_file.h"
+#include "standard_streams.h"
 
 namespace lodestone::tool {
 namespace {
 
 constexpr int kMaxLevelCount = 32;
 
+/// Places a file beside the output, in a folder that is made where it does not exist.
+Result<void> place_beside(std::optional<std::filesystem::path>& file, const std::filesystem::path& input,
+                          const std::string& extension, bool several, MadeFolders& folders) {
+  if (!file) return {};
+  const std::filesystem::path placed = place_in(*file, input, extension, several);
+  if (placed != *file) {
+    if (Result<void> made = folders.make(placed.parent_path()); !made) return made;
+  } else if (several) {
+    return fail(ErrorCode::InvalidArgument, quoted(*file) + " is one file for several inputs: name a folder");
+  }
+  file = placed;
+  return {};
+}
+
+bool writes_to_standard_output(const BuildCommand& options) {
+  return is_standard_stream(options.output) || (options.report && is_standard_stream(*options.report)) ||
+         (options.html && is_standard_stream(*options.html));
+}
+
+Result<Outcome> build_one(const BuildCommand& options, ProgressBar& progress) {
+  const Result<BuildResult> result = run_build(options, progress);
+  progress.clear();
+  if (!result) return tl::unexpected(result.error());
+  if (result->outcome != Outcome::Done) return result->outcome;
+  for (const std::string& line : leftover_levels(options, result->report)) print_warning(line);
+  if (!options.quiet && !writes_to_standard_output(options)) print_table(result->report);
+  return result->outcome;
+}
+
+/// How much of the whole work each part is, as far as the sizes of the inputs tell.
+std::vector<double> expected_work(const std::vector<BuildCommand>& parts) {
+  constexpr double kLeast = 1000;
+  std::vector<double> work;
+  for (const BuildCommand& part : parts) {
+    std::error_code unknown;
+    const auto bytes = static_cast<double>(std::filesystem::file_size(part.input, unknown));
+    work.push_back(unknown ? kLeast : std::max(bytes, kLeast));
+  }
+  return work;
+}
+
+/// Builds one after the other; what is wrong with one does not keep the others.
+Result<Outcome> build_each(const std::vector<BuildCommand>& parts, ProgressBar& progress) {
+  const std::vector<double> work = expected_work(parts);
+  const double whole = std::accumulate(work.begin(), work.end(), 0.0);
+  std::optional<ErrorCode> first_error;
+  std::size_t failed = 0;
+  Outcome outcome = Outcome::Done;
+  double done = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    progress.start_piece(parts[i].input.filename().string() + ", ", done / whole, (done + work[i]) / whole);
+    done += work[i];
+    const Result<Outcome> result = build_one(parts[i], progress);
+    if (result && *result != Outcome::Done) outcome = *result;
+    if (result) continue;
+    print_error(quoted(parts[i].input) + " is not built: " + describe(result.error()));
+    if (!first_error) first_error = result.error().code;
+    ++failed;
+  }
+  if (!first_error) return outcome;
+  return fail(*first_error, std::to_string(failed) + " of " + std::to_string(parts.size()) + " inputs are not built");
+}
+
 }  // namespace
 
 void BuildCommand::add_to(CLI::App& app) {
-  app.add_option("-i,--input,IN", input, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("-o,--output", output, "The .glb to write")->required()->type_name("OUT.glb");
+  files.add_to(app, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others; - for standard input",
+               "The .glb or .gltf to write; a folder, for several inputs; - for standard output");
+  app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
+      ->check(CLI::IsMember({"glb", "gltf"}))
+      ->type_name("NAME");
+  app.add_option("--input-format", input_format,
+                 "What standard input is, as an extension (default: as its content says)")
+      ->type_name("NAME");
   app.add_option("--report", report, "Write a JSON report")->type_name("R.json");
   app.add_option("--html", html, "Write a page that shows the levels, their errors and where these are")
       ->type_name("P.html");
@@ -27,11 +102,12 @@ void BuildCommand::add_to(CLI::App& app) {
   add_format_options(app);
   app.footer(
       "Examples:\n"
-      "  lodestone build bunny.obj -o bunny.glb\n"
+      "  lodestone build bunny.obj bunny.glb\n"
       "  lodestone build bunny.obj -o bunny.glb --error 0.1%,0.5%,2% --report bunny.json\n"
       "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --no-draco\n"
       "  lodestone build bunny.obj -o bunny.glb --html bunny.html\n"
-      "  lodestone build town.gltf -o town.glb --profile files");
+      "  lodestone build town.gltf -o town.glb --profile files\n"
+      "  lodestone build *.obj -o lods/");
 }
 
 void BuildCommand::add_level_options(CLI::App& app) {
@@ -55,17 +131,20 @@ void BuildCommand::add_control_options(CLI::App& app) {
   app.add_option("--weight", weights,
                  "How much differences of an attribute count: normal=0.25, texcoord=1, color=0.5, skin=3, target=3")
       ->type_name("NAME=FACTOR")
+      ->allow_extra_args(false)
       ->delimiter(',')
       ->group(group);
-  app.add_option("--importance", importance,
-                 "The vertex attribute that says how important a vertex is (default _LODESTONE_IMPORTANCE): a factor, "
-                 "from 1000 on the vertex stays; a COLOR_n counts 1/16 where black, 16 where bright, and stays where white")
+  app.add_option(
+         "--importance", importance,
+         "The vertex attribute that says how important a vertex is (default _LODESTONE_IMPORTANCE): a factor, "
+         "from 1000 on the vertex stays; a COLOR_n counts 1/16 where black, 16 where bright, and stays where white")
       ->type_name("NAME")
       ->group(group);
   app.add_option("--settings", settings, "Importance and locks of materials and nodes, by name; see the README")
       ->type_name("S.json")
       ->group(group);
-  app.add_flag("--vanish", vanish, "Let even the last piece of a mesh vanish where the target asks for it")->group(group);
+  app.add_flag("--vanish", vanish, "Let even the last piece of a mesh vanish where the target asks for it")
+      ->group(group);
 }
 
 void BuildCommand::add_metric_options(CLI::App& app) {
@@ -86,9 +165,10 @@ void BuildCommand::add_metric_options(CLI::App& app) {
 
 void BuildCommand::add_format_options(CLI::App& app) {
   const char* group = "File";
-  app.add_option("--placement", placement,
-                 "Where a level's vertices lie: fitted to the original (default; skinned and morphed meshes are left out), "
-                 "or a subset of its vertices, as in the stream")
+  app.add_option(
+         "--placement", placement,
+         "Where a level's vertices lie: fitted to the original (default; skinned and morphed meshes are left out), "
+         "or a subset of its vertices, as in the stream")
       ->check(CLI::IsMember({"optimised", "subset"}))
       ->type_name("NAME")
       ->group(group);
@@ -102,13 +182,14 @@ void BuildCommand::add_format_options(CLI::App& app) {
                           ->check(CLI::Range(1, 30))
                           ->type_name("BITS")
                           ->group(group);
-  CLI::Option* step = app.add_option("--grid-step", grid_step,
-                                     "Round Draco positions to multiples of this, in the meshes' own units, instead of a "
-                                     "grid fitted to the file: tiles built one by one with --lock-border then fit together")
-                          ->check(CLI::PositiveNumber)
-                          ->type_name("STEP")
-                          ->excludes(bits)
-                          ->group(group);
+  CLI::Option* step =
+      app.add_option("--grid-step", grid_step,
+                     "Round Draco positions to multiples of this, in the meshes' own units, instead of a "
+                     "grid fitted to the file: tiles built one by one with --lock-border then fit together")
+          ->check(CLI::PositiveNumber)
+          ->type_name("STEP")
+          ->excludes(bits)
+          ->group(group);
   app.add_option("--grid-origin", grid_origin, "Where multiples of --grid-step count from (default 0,0,0)")
       ->expected(3)
       ->delimiter(',')
@@ -117,6 +198,35 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->group(group);
 }
 
-Result<Outcome> BuildCommand::run() const { return run_build(*this); }
+/// Returns a command for each input, its files named; makes the folders that they go into.
+Result<std::vector<BuildCommand>> BuildCommand::split(MadeFolders& folders) const {
+  const Result<std::vector<FilePair>> pairs = files.pair_up("." + format);
+  if (!pairs) return tl::unexpected(pairs.error());
+  const bool several = pairs->size() > 1;
+  std::vector<BuildCommand> parts(pairs->size(), *this);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const FilePair& pair = (*pairs)[i];
+    BuildCommand& part = parts[i];
+    part.input = pair.input;
+    part.output = pair.output;
+    Result<void> done;
+    if (pair.in_folder) done = folders.make(pair.output.parent_path());
+    if (done) done = place_beside(part.report, part.input, ".json", several, folders);
+    if (done) done = place_beside(part.html, part.input, ".html", several, folders);
+    if (!done) return tl::unexpected(done.error());
+  }
+  return parts;
+}
+
+Result<Outcome> BuildCommand::run() const {
+  if (!input_format.empty() && !files.reads_standard_input())
+    return fail(ErrorCode::InvalidArgument, "--input-format is for the standard input: give - as the input");
+  MadeFolders folders;
+  const Result<std::vector<BuildCommand>> parts = split(folders);
+  if (!parts) return tl::unexpected(parts.error());
+  ProgressBar progress(!quiet);
+  if (parts->size() == 1) return build_one(parts->front(), progress);
+  return build_each(*parts, progress);
+}
 
 }  // namespace lodestone::tool

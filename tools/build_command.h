@@ -8,6 +8,7 @@
 #include <lodestone/core/result.h>
 
 #include "command.h"
+#include "file_words.h"
 #include "target_options.h"
 
 namespace CLI {
@@ -16,9 +17,14 @@ class App;
 
 namespace lodestone::tool {
 
-/// `lodestone build`: a scene or mesh file in, a progressive multi-LOD .glb out.
+class MadeFolders;
+
+/// `lodestone build`: a scene or mesh file in, a progressive multi-LOD .glb or .gltf out; or several, each for itself.
 struct BuildCommand {
-  std::filesystem::path input;
+  FileWords files;
+  std::string format = "glb";   ///< of what goes into a folder or to the standard output
+  std::string input_format;     ///< of the standard input, an extension without the dot; empty: go by the content
+  std::filesystem::path input;  ///< one of the files, as the next
   std::filesystem::path output;
   std::optional<std::filesystem::path> report;
   std::optional<std::filesystem::path> html;
@@ -45,10 +51,11 @@ struct BuildCommand {
   bool strict = false;
 
   void add_to(CLI::App& app);
-  /// Errors: any; nothing is written then.
+  /// Errors: any; nothing is written then of an input that has one.
   Result<Outcome> run() const;
 
  private:
+  Result<std::vector<BuildCommand>> split(MadeFolders& folders) const;
   void add_level_options(CLI::App& app);
   void add_metric_options(CLI::App& app);
   void add_control_options(CLI::App& app);

@@ -57,9 +57,9 @@ bool has_file_per_level(const BuildCommand& options) { return options.profile ==
 Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   Result<std::vector<LevelTarget>> given = options.targets.parse();
   if (!given) return given;
-  const bool by_ratio = given->empty() || options.targets.ratio;
+  const bool by_ratio = given->empty() || options.targets.is_one_ratio();
   if (!by_ratio && options.level_count) {
-    return fail(ErrorCode::InvalidArgument, "--levels goes with --ratio; a list has one level for each entry");
+    return fail(ErrorCode::InvalidArgument, "--levels goes with one --ratio; a list has one level for each entry");
   }
   if (!by_ratio) return given;
   const double ratio = given->empty() ? kDefaultRatio : given->front().value;

@@ -2,18 +2,52 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string_view>
 #include <system_error>
 
+#include "asset_files.h"
 #include "build_options.h"
 #include "messages.h"
 #include "staged_file.h"
+#include "standard_streams.h"
 
 namespace lodestone::tool {
 namespace {
 
 /// Raised whenever a member changes its meaning or goes away.
 constexpr int kIndexSchemaVersion = 1;
+
+/// What the names of levels begin with, in files of their own.
+std::string level_stem(const BuildCommand& options) { return options.output.stem().string() + "_LOD"; }
+
+/// Whether a file is called as a level is: STEM, a number, an extension of glTF or of its data.
+bool is_level_name(const std::string& name, const std::string& stem) {
+  if (!name.starts_with(stem)) return false;
+  const std::size_t end = name.find_first_not_of("0123456789", stem.size());
+  if (end == name.npos || end == stem.size()) return false;
+  const std::string extension = lower_extension(name.substr(stem.size()));
+  return name.find('.', end) == end && (extension == ".glb" || extension == ".gltf");
+}
+
+/// A .gltf has files beside it, and so needs a place.
+Result<void> check_format(const BuildCommand& options) {
+  if (is_standard_stream(options.output)) {
+    if (options.format == "gltf")
+      return fail(ErrorCode::InvalidArgument, "--format: a .gltf is several files, the standard output takes one");
+    if (has_file_per_level(options))
+      return fail(ErrorCode::InvalidArgument, "--profile files writes several files, the standard output takes one");
+    if (standard_output_is_terminal())
+      return fail(ErrorCode::InvalidArgument, "-o: the standard output is a terminal: send it to a file or a program");
+    return {};
+  }
+  const std::string extension = lower_extension(options.output);
+  if (extension == ".glb" || extension == ".gltf") return {};
+  const std::string hint = extension.empty() ? ": write '" + options.output.string() + ".glb', or '" +
+                                                   options.output.string() + "/' for a folder"
+                                             : "";
+  return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " does not end in .glb or .gltf" + hint);
+}
 
 Result<void> check_path(const BuildCommand& options, const std::filesystem::path& path) {
   std::error_code ignored;
@@ -76,7 +110,7 @@ std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std
   std::vector<std::filesystem::path> paths;
   for (std::size_t i = 0; i < level_count; ++i) {
     paths.push_back(options.output);
-    paths.back().replace_filename(options.output.stem().string() + "_LOD" + std::to_string(i) + ".glb");
+    paths.back().replace_filename(level_stem(options) + std::to_string(i) + options.output.extension().string());
   }
   paths.push_back(options.output);
   paths.back().replace_extension(".json");
@@ -84,9 +118,7 @@ std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std
 }
 
 Result<void> check_paths(const BuildCommand& options, std::size_t level_count) {
-  if (options.output.extension() != ".glb") {
-    return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " does not end in .glb");
-  }
+  if (Result<void> fit = check_format(options); !fit) return fit;
   for (const std::filesystem::path& path : output_paths(options, level_count))
     if (Result<void> place = check_path(options, path); !place) return place;
   if (options.html) {
@@ -103,12 +135,32 @@ void list_files(const BuildCommand& options, std::span<const EncodedAsset> asset
   }
 }
 
+std::vector<std::string> leftover_levels(const BuildCommand& options, const BuildReport& report) {
+  if (!has_file_per_level(options)) return {};
+  std::set<std::string> written;
+  for (const BuildReport::OutputFile& file : report.files)
+    written.insert(std::filesystem::path(file.path).filename().string());
+  const std::filesystem::path parent = options.output.parent_path();
+  std::set<std::string> left;  // sorted
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(parent.empty() ? "." : parent, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (is_level_name(name, level_stem(options)) && !written.contains(name))
+      left.insert(quoted(std::string_view(name)));
+  }
+  if (left.empty()) return {};
+  std::string list;
+  for (const std::string& name : left) list += (list.empty() ? "" : ", ") + name;
+  return {list + (left.size() == 1 ? " is" : " are") + " left from an earlier run: no level of this one"};
+}
+
 Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, const BuildReport& report,
                            const std::string& page) {
   const std::vector<std::filesystem::path> paths = output_paths(options, assets.size());
   StagedFiles files;
+  const InputFiles input{options.input, report.input.files};
   for (std::size_t i = 0; i < assets.size(); ++i) {
-    if (Result<void> done = files.add(paths[i], assets[i].glb); !done) return done;
+    if (Result<void> done = add_asset(assets[i], paths[i], input, files); !done) return done;
   }
   if (has_file_per_level(options)) {
     if (Result<void> done = files.add(paths.back(), json_text(index_json(report))); !done) return done;

@@ -13,7 +13,8 @@
 
 namespace lodestone::tool {
 
-/// Returns the files that `build` writes beside its report: OUT.glb, or OUT_LOD0.glb … and the index OUT.json.
+/// Returns the files that `build` writes beside its report: OUT.glb, or OUT_LOD0.glb … and the index OUT.json;
+/// what lies beside a .gltf is not among them.
 std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std::size_t level_count);
 
 /// Checks, before the long work starts, that all files can be written, each to a place of its own.
@@ -23,6 +24,10 @@ Result<void> check_paths(const BuildCommand& options, std::size_t level_count);
 /// Enters the encoded files in the report, under the paths that they will have. Pre: one asset for each level of the
 /// report with `--profile files`, otherwise one.
 void list_files(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report);
+
+/// Returns a sentence that names levels of an earlier run with `--profile files` that lie beside those of this one, or
+/// none. Pre: the report has all levels.
+std::vector<std::string> leftover_levels(const BuildCommand& options, const BuildReport& report);
 
 /// Writes the encoded files, the index, the page and the report, all of them or none; the last three where the options
 /// ask for them. Pre: as above. Errors: NotWritten.

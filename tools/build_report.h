@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct BuildReport {
     Box box;                       ///< of the scene
     AssemblyReport assembly;       ///< of all meshes
     std::vector<std::string> notes;
+    std::vector<std::filesystem::path> files;  ///< that it needs beside it, relative to its folder
   };
   struct Level {
     std::size_t face_count = 0;    ///< drawn

@@ -18,9 +18,10 @@
 #include "build_output.h"
 #include "build_report.h"
 #include "build_settings.h"
+#include "file_words.h"
+#include "input_files.h"
 #include "messages.h"
 #include "parallel.h"
-#include "progress_bar.h"
 #include "scene_target.h"
 #include "scene_totals.h"
 #include "stopwatch.h"
@@ -32,6 +33,10 @@ namespace {
 constexpr double kMostFacesOfOneRemoval = 2;
 constexpr double kQuantisationShare = 0.1;  // of an error that a level may have
 constexpr double kBoxGrowth = 1.05;         // fitted vertices may lie a little outside of the box that grids span
+
+/// About what share of the time each step takes; together 1.
+constexpr double kReadingShare = 0.01, kSimplifyingShare = 0.12, kMakingShare = 0.5, kMeasuringShare = 0.33,
+                 kWritingShare = 0.04;
 
 AssemblyReport assembly_of(const Scene& scene) {
   AssemblyReport total;
@@ -59,7 +64,7 @@ Result<void> check_input(const std::filesystem::path& path, const Scene& scene) 
 }
 
 BuildReport::Input input_report(const std::filesystem::path& path, const Scene& scene) {
-  BuildReport::Input input{path.string(), 0, 0, scene.box(), assembly_of(scene), scene.notes()};
+  BuildReport::Input input{path.string(), 0, 0, scene.box(), assembly_of(scene), scene.notes(), scene.files()};
   for (const SceneMesh& mesh : scene.meshes()) {
     input.face_count += mesh.mesh.face_count() * mesh.instance_count;
     input.vertex_count += mesh.mesh.vertex_count() * mesh.instance_count;
@@ -105,11 +110,13 @@ struct LevelJob {
 /// One run of the command: its steps in order, and what they hand on to each other.
 class BuildRun {
  public:
-  explicit BuildRun(const BuildCommand& options) : options_(options), progress_(!options.quiet) {}
+  BuildRun(const BuildCommand& options, ProgressBar& progress) : options_(options), progress_(progress) {}
 
   Result<Outcome> run();
+  BuildReport take_report() { return std::move(report_); }
 
  private:
+  std::size_t file_count() const { return has_file_per_level(options_) ? report_.levels.size() : 1; }
   bool wants_streams() const { return !options_.no_stream && !has_file_per_level(options_); }
   TargetScope scope() const { return options_.per_mesh ? TargetScope::Mesh : TargetScope::Scene; }
 
@@ -144,7 +151,7 @@ class BuildRun {
   void report_layouts(std::span<const EncodedAsset> assets);
 
   const BuildCommand& options_;
-  ProgressBar progress_;
+  ProgressBar& progress_;
   Stopwatch stopwatch_;
   std::vector<LevelTarget> targets_;
   SimplifyOptions common_options_;
@@ -172,7 +179,6 @@ Result<Outcome> BuildRun::run() {
   if (report_missed_targets() && options_.strict) return Outcome::TargetNotMet;
 
   if (Result<void> done = write(); !done) return tl::unexpected(done.error());
-  if (!options_.quiet) print_table(report_);
   return Outcome::Done;
 }
 
@@ -188,8 +194,8 @@ Result<void> BuildRun::read_controls() {
 }
 
 Result<void> BuildRun::read() {
-  progress_.start("reading");
-  Result<Scene> scene = Scene::read(options_.input);
+  progress_.start("reading", kReadingShare);
+  Result<Scene> scene = read_scene(options_.input, options_.input_format);
   progress_.clear();
   if (!scene) return tl::unexpected(scene.error());
   scene_ = std::move(*scene);
@@ -197,7 +203,10 @@ Result<void> BuildRun::read() {
   if (Result<void> known = check_names(settings_, *scene_); !known) return known;
   report_.input = input_report(options_.input, *scene_);
   sort_finest_first(targets_, {report_.input.face_count, scene_->box().diagonal()});
-  for (const std::string& line : remarks(*scene_)) print_warning(quoted(options_.input) + ": " + line);
+  std::vector<std::string> lines = remarks(*scene_);
+  for (std::string& line : options_.targets.remarks(scene_->box().diagonal(), scene_->in_metres()))
+    lines.push_back(std::move(line));
+  for (const std::string& line : lines) print_warning(quoted(options_.input) + ": " + line);
   report_.timings_ms.read = stopwatch_.lap_ms();
   return {};
 }
@@ -228,7 +237,7 @@ Result<SimplifyOptions> BuildRun::options_for(const SceneMesh& mesh) const {
 }
 
 Result<void> BuildRun::simplify_meshes() {
-  progress_.start("simplifying");
+  progress_.start("simplifying", kSimplifyingShare);
   const std::vector<SceneMesh>& meshes = scene_->meshes();
   std::vector<Result<SimplifyResult>> results(meshes.size());
   SharedProgress shared(progress_);
@@ -282,7 +291,7 @@ std::vector<double> BuildRun::world_charges(const SimplifyResult& result, double
 }
 
 void BuildRun::make_levels() {
-  progress_.start("making levels");
+  progress_.start("making levels", kMakingShare);
   choices_ = choose_levels();
   levels_.resize(simplified_.size());
   std::vector<LevelJob> jobs;
@@ -403,7 +412,8 @@ void BuildRun::make_mesh_level(LevelJob& job) const {
 /// Measures levels as a file has them; the first of each mesh is number `first`.
 void BuildRun::measure_levels(std::span<std::vector<AssetLevel>> meshes, std::size_t first) {
   report_.timings_ms.write += stopwatch_.lap_ms();
-  progress_.start("measuring levels");
+  const double share_of_files = 1.0 / static_cast<double>(file_count());
+  progress_.start("measuring levels", kMeasuringShare * share_of_files);
   SharedProgress shared(progress_);
   const std::size_t count = meshes.front().size();
   for (std::size_t i = 0; i < meshes.size() * count; ++i) shared.add_part(1);
@@ -424,7 +434,7 @@ void BuildRun::measure_levels(std::span<std::vector<AssetLevel>> meshes, std::si
   }
   for (std::size_t level = 0; level < count; ++level) report_measured(first + level);
   report_.timings_ms.levels += stopwatch_.lap_ms();
-  progress_.start("writing");
+  progress_.start("writing", kWritingShare * share_of_files);
 }
 
 /// Measures one level of one mesh, unless the file has the whole mesh as it was.
@@ -509,8 +519,9 @@ Result<void> BuildRun::encode_streams() {
 Result<std::vector<EncodedAsset>> BuildRun::encode() {
   AssetOptions options = storage();
   std::vector<EncodedAsset> assets;
-  const std::size_t file_count = has_file_per_level(options_) ? report_.levels.size() : 1;
-  for (std::size_t i = 0; i < file_count; ++i) {
+  const std::vector<std::filesystem::path> paths = output_paths(options_, file_count());
+  for (std::size_t i = 0; i < file_count(); ++i) {
+    if (lower_extension(paths[i]) == ".gltf") options.gltf_name = paths[i].stem().string();
     options.measure = [&](std::span<std::vector<AssetLevel>> meshes) { measure_levels(meshes, i); };
     Result<EncodedAsset> asset = has_file_per_level(options_) ? encode_scene_level(*scene_, levels_, i, options)
                                                               : encode_scene(*scene_, levels_, options);
@@ -522,7 +533,7 @@ Result<std::vector<EncodedAsset>> BuildRun::encode() {
 }
 
 Result<void> BuildRun::write() {
-  progress_.start("writing");
+  progress_.start("writing", 0);  // the levels are encoded first, and measured
   if (Result<void> done = encode_streams(); !done) return done;
   const Result<std::vector<EncodedAsset>> assets = encode();
   if (!assets) return tl::unexpected(assets.error());
@@ -558,6 +569,11 @@ void BuildRun::report_layouts(std::span<const EncodedAsset> assets) {
 
 }  // namespace
 
-Result<Outcome> run_build(const BuildCommand& options) { return BuildRun(options).run(); }
+Result<BuildResult> run_build(const BuildCommand& options, ProgressBar& progress) {
+  BuildRun run(options, progress);
+  const Result<Outcome> outcome = run.run();
+  if (!outcome) return tl::unexpected(outcome.error());
+  return BuildResult{*outcome, run.take_report()};
+}
 
 }  // namespace lodestone::tool

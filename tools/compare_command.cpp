@@ -15,10 +15,12 @@
 #include "error_map.h"
 #include "heatmap.h"
 #include "html_report.h"
+#include "input_files.h"
 #include "json_text.h"
 #include "messages.h"
 #include "progress_bar.h"
 #include "staged_file.h"
+#include "standard_streams.h"
 #include "text_table.h"
 
 namespace lodestone::tool {
@@ -34,7 +36,7 @@ struct Surface {
 };
 
 Result<Surface> read_surface(const std::filesystem::path& path) {
-  Result<MeshFile> file = read_mesh(path);
+  Result<MeshFile> file = read_mesh_file(path);
   if (!file) return tl::unexpected(file.error());
   if (file->mesh.face_count() == 0) {
     return fail(ErrorCode::Malformed, quoted(path) + ": no triangles to compare");
@@ -113,6 +115,8 @@ Result<void> check_output(const char* option, const std::filesystem::path& path,
 }
 
 Result<void> check_outputs(const CompareCommand& options) {
+  if (is_standard_stream(options.first) && is_standard_stream(options.second))
+    return fail(ErrorCode::InvalidArgument, "the standard input can be A or B, not both");
   if (options.heatmap) {
     if (Result<void> done = check_heatmap_path(*options.heatmap); !done) return done;
     if (Result<void> done = check_output("--heatmap", *options.heatmap, options); !done) return done;
@@ -137,7 +141,10 @@ void print_comparison(const Surface& a, const Surface& b, const Deviation& devia
 }  // namespace
 
 void CompareCommand::add_to(CLI::App& app) {
-  app.add_option("A", first, "Mesh file; percentages are of its bounding-box diagonal")->required()->type_name("FILE");
+  app.add_option("A", first,
+                 "Mesh file; percentages are of its bounding-box diagonal. Of A and B one may be - for standard input")
+      ->required()
+      ->type_name("FILE");
   app.add_option("B", second, "Mesh file")->required()->type_name("FILE");
   app.add_flag("--json", json, "Print JSON");
   app.add_option("--samples", samples, "About so many samples of each surface for mean and rms; the maximum needs none")
@@ -156,12 +163,12 @@ void CompareCommand::add_to(CLI::App& app) {
 Result<Outcome> CompareCommand::run() const {
   if (Result<void> paths = check_outputs(*this); !paths) return tl::unexpected(paths.error());
   ProgressBar progress(true);
-  progress.start("reading");
+  progress.start("reading", 0.1);
   const Result<Surface> a = read_surface(first);
   if (!a) return tl::unexpected(a.error());
   const Result<Surface> b = read_surface(second);
   if (!b) return tl::unexpected(b.error());
-  progress.start("measuring");
+  progress.start("measuring", html || heatmap ? 0.5 : 0.9);
   DeviationOptions how;
   how.sample_count = samples;
   const Deviation deviation = measure_deviation(a->mesh, b->mesh, how);
@@ -170,7 +177,7 @@ Result<Outcome> CompareCommand::run() const {
 
   StagedFiles files;
   if (html) {
-    progress.start("drawing");
+    progress.start("drawing", 0.4);
     const Result<std::string> page = comparison_page(*a, *b, comparison, diagonal);
     if (!page) return tl::unexpected(page.error());
     if (Result<void> done = files.add(*html, *page); !done) return tl::unexpected(done.error());

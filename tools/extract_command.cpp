@@ -3,46 +3,47 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 
-#include <lodestone/io/file.h>
 #include <lodestone/io/read_mesh.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
 #include <lodestone/io/write_mesh.h>
 #include <lodestone/lod/cursor.h>
 
+#include "asset_files.h"
+#include "input_files.h"
 #include "messages.h"
 #include "scene_target.h"
 #include "staged_file.h"
+#include "standard_streams.h"
 #include "text_table.h"
 
 namespace lodestone::tool {
 namespace {
 
-constexpr std::array kExtensions = {".glb", ".obj", ".ply"};
+constexpr std::array kExtensions = {".glb", ".gltf", ".obj", ".ply"};
 
-Result<void> check_paths(const ExtractCommand& options) {
-  const std::string extension = options.output.extension().string();
+/// Where the level goes: a file and its format, an extension with its dot.
+struct Destination {
+  std::filesystem::path path;
+  std::string extension;
+};
+
+Result<Destination> check_destination_of(const FilePair& files, const std::string& format) {
+  const bool is_stream = is_standard_stream(files.output);
+  const std::string extension = is_stream ? "." + format : lower_extension(files.output);
   if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end()) {
-    return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " does not end in .glb, .obj or .ply");
+    return fail(ErrorCode::InvalidArgument,
+                "-o: " + quoted(files.output) + " does not end in .glb, .gltf, .obj or .ply");
   }
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.input, options.output, ignored)) {
-    return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " is the input");
-  }
-  return check_destination(options.output);
-}
-
-Result<LevelTarget> requested_target(const TargetOptions& options) {
-  const Result<std::vector<LevelTarget>> targets = options.parse();
-  if (!targets) return tl::unexpected(targets.error());
-  if (targets->size() != 1) {
-    return fail(ErrorCode::InvalidArgument, "give one value with one of --error, --epsilon, --faces, --ratio");
-  }
-  return targets->front();
+  if (is_stream && extension == ".gltf")
+    return fail(ErrorCode::InvalidArgument, "--format: a .gltf is several files, the standard output takes one");
+  if (is_stream && extension != ".obj" && standard_output_is_terminal())
+    return fail(ErrorCode::InvalidArgument, "-o: the standard output is a terminal: send it to a file or a program");
+  if (Result<void> fit = check_destination(files.output); !fit) return tl::unexpected(fit.error());
+  return Destination{files.output, extension};
 }
 
 /// A scene with the progressive meshes that its streams hold.
@@ -53,7 +54,7 @@ struct StreamedScene {
 };
 
 Result<StreamedScene> read_streams(const std::filesystem::path& path) {
-  Result<Scene> scene = Scene::read_multi_lod(path);
+  Result<Scene> scene = read_levels(path, 0);
   if (!scene) return tl::unexpected(scene.error());
   StreamedScene streamed{std::move(*scene), {}, {}};
   for (std::size_t i = 0; i < streamed.scene.meshes().size(); ++i) {
@@ -67,7 +68,7 @@ Result<StreamedScene> read_streams(const std::filesystem::path& path) {
     streamed.meshes.push_back(i);
     streamed.progressive.push_back(std::move(*progressive));
   }
-  if (streamed.meshes.empty()) return fail(ErrorCode::Unsupported, quoted(path) + ": holds no removal stream");
+  if (streamed.meshes.empty()) return tl::unexpected(not_streamed(path, ErrorCode::Unsupported, "none of its meshes has one"));
   return streamed;
 }
 
@@ -108,16 +109,37 @@ Extracted extract_positions(const StreamedScene& streamed, std::span<const Index
   return out;
 }
 
-/// A .glb keeps the scene; other formats get its triangles in world space.
-Result<void> write_extracted(const std::filesystem::path& path, const Scene& scene, const Extracted& extracted) {
+/// Lists what a scene holds as the level of each of its meshes.
+Extracted take_scene(const Scene& scene) {
+  Extracted out;
+  for (const SceneMesh& mesh : scene.meshes()) {
+    out.meshes.emplace_back().levels.resize(1);
+    out.meshes.back().levels[0].mesh = mesh.mesh;
+    out.face_count += mesh.mesh.face_count() * mesh.instance_count;
+    out.vertex_count += mesh.mesh.vertex_count() * mesh.instance_count;
+  }
+  return out;
+}
+
+/// A glTF keeps the scene; other formats get its triangles in world space.
+Result<void> write_extracted(const std::filesystem::path& input, const Destination& to, const Scene& scene,
+                             const Extracted& extracted) {
   AssetOptions options;
   options.draco = false;
+  if (to.extension == ".gltf") options.gltf_name = to.path.stem().string();
   const Result<EncodedAsset> asset = encode_scene_level(scene, extracted.meshes, 0, options);
   if (!asset) return tl::unexpected(asset.error());
-  if (path.extension() == ".glb") return write_file(path, asset->glb);
+  StagedFiles files;
+  if (to.extension == ".glb" || to.extension == ".gltf") {
+    const Result<void> added = add_asset(*asset, to.path, {input, scene.files()}, files);
+    return added ? files.commit() : added;
+  }
   const Result<MeshFile> flat = read_mesh_bytes(asset->glb, "glb");
   if (!flat) return tl::unexpected(flat.error());
-  return write_mesh(path, flat->mesh);
+  const Result<std::vector<std::byte>> bytes = write_mesh_bytes(flat->mesh, to.path.stem().concat(to.extension));
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (Result<void> done = files.add(to.path, *bytes); !done) return done;
+  return files.commit();
 }
 
 std::string missed_message(std::size_t face_count, const LevelTarget& target) {
@@ -125,47 +147,83 @@ std::string missed_message(std::size_t face_count, const LevelTarget& target) {
          std::to_string(static_cast<std::uint64_t>(target.value)) + " were asked for";
 }
 
+/// Takes a level as it stands in the file.
+Result<Outcome> extract_level_number(const ExtractCommand& options, const std::filesystem::path& input,
+                                     const Destination& to) {
+  const Result<Scene> scene = read_levels(input, *options.level);
+  if (!scene) return tl::unexpected(scene.error());
+  const Extracted extracted = take_scene(*scene);
+  if (Result<void> done = write_extracted(input, to, *scene, extracted); !done) return tl::unexpected(done.error());
+  if (!options.quiet && !is_standard_stream(to.path))
+    std::printf("%s: %zu faces, %zu vertices\n", to.path.c_str(), extracted.face_count, extracted.vertex_count);
+  return Outcome::Done;
+}
+
+/// Takes a level out of the streams.
+Result<Outcome> extract_target(const ExtractCommand& options, const std::filesystem::path& input,
+                               const LevelTarget& requested, const Destination& to) {
+  const Result<StreamedScene> streamed = read_streams(input);
+  if (!streamed) return tl::unexpected(streamed.error());
+  const double diagonal = streamed->scene.box().diagonal();
+  for (const std::string& line : options.target.remarks(diagonal, true)) print_warning(line);
+  const SceneChoice choice = choose_positions(parts_of(*streamed), requested, TargetScope::Scene, diagonal);
+  const Extracted extracted = extract_positions(*streamed, choice.positions);
+  if (!choice.met) {
+    const std::string message = missed_message(extracted.face_count, choice.target);
+    options.strict ? print_error(message) : print_warning(message);
+    if (options.strict) return Outcome::TargetNotMet;
+  }
+  if (Result<void> done = write_extracted(input, to, streamed->scene, extracted); !done) {
+    return tl::unexpected(done.error());
+  }
+  if (!options.quiet && !is_standard_stream(to.path)) {
+    std::printf("%s: %zu faces, %zu vertices, deviation at most %s (%s of the diagonal)\n", to.path.c_str(),
+                extracted.face_count, extracted.vertex_count, number_text(extracted.deviation).c_str(),
+                percent_text(extracted.deviation, diagonal).c_str());
+  }
+  return Outcome::Done;
+}
+
 }  // namespace
 
 void ExtractCommand::add_to(CLI::App& app) {
-  app.add_option("-i,--input,IN", input, "A .glb that lodestone build wrote, with its streams")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("-o,--output", output, "The .glb, .obj or .ply to write")->required()->type_name("OUT");
-  target.add_to(app, "Target: one of these", false);
+  files.add_to(app, "A .glb or .gltf that lodestone build wrote, with its streams; - for standard input",
+               "The .glb, .gltf, .obj or .ply to write; - for standard output");
+  app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
+      ->check(CLI::IsMember({"glb", "gltf", "obj", "ply"}))
+      ->type_name("NAME");
+  const char* group = "Target: one of these";
+  target.add_to(app, group, false);
+  app.add_option("--level", level, "This level as it stands in the file, 0 the finest")->type_name("N")->group(group);
   app.add_flag("--strict", strict, "Write nothing and exit with 5 where the target cannot be met");
   app.add_flag("-q,--quiet", quiet, "Print warnings and errors only");
   app.footer(
       "Examples:\n"
       "  lodestone extract bunny.glb --error 0.1% -o bunny-near.glb\n"
       "  lodestone extract bunny.glb --faces 855 -o bunny-far.obj\n"
+      "  lodestone extract bunny.glb --level 2 -o bunny-2.glb\n"
       "  lodestone extract bunny.glb --error 0 -o bunny-whole.ply");
 }
 
 Result<Outcome> ExtractCommand::run() const {
-  if (Result<void> paths = check_paths(*this); !paths) return tl::unexpected(paths.error());
-  const Result<LevelTarget> requested = requested_target(target);
-  if (!requested) return tl::unexpected(requested.error());
-  const Result<StreamedScene> streamed = read_streams(input);
-  if (!streamed) return tl::unexpected(streamed.error());
-
-  const double diagonal = streamed->scene.box().diagonal();
-  const SceneChoice choice = choose_positions(parts_of(*streamed), *requested, TargetScope::Scene, diagonal);
-  const Extracted extracted = extract_positions(*streamed, choice.positions);
-  if (!choice.met) {
-    const std::string message = missed_message(extracted.face_count, choice.target);
-    strict ? print_error(message) : print_warning(message);
-    if (strict) return Outcome::TargetNotMet;
+  const Result<std::vector<FilePair>> pairs = files.pair_up("." + format);
+  if (!pairs) return tl::unexpected(pairs.error());
+  if (pairs->size() > 1) return fail(ErrorCode::InvalidArgument, "extract takes one input");
+  const std::filesystem::path& input = pairs->front().input;
+  const Result<std::vector<LevelTarget>> targets = target.parse();
+  if (!targets) return tl::unexpected(targets.error());
+  if (targets->size() + (level ? 1 : 0) != 1) {
+    return fail(ErrorCode::InvalidArgument, "give one value with one of --error, --epsilon, --faces, --ratio, --level");
   }
-  if (Result<void> done = write_extracted(output, streamed->scene, extracted); !done) {
-    return tl::unexpected(done.error());
+  MadeFolders folders;
+  if (pairs->front().in_folder) {
+    if (Result<void> made = folders.make(pairs->front().output.parent_path()); !made)
+      return tl::unexpected(made.error());
   }
-  if (!quiet) {
-    std::printf("%s: %zu faces, %zu vertices, deviation at most %s (%s of the diagonal)\n", output.c_str(),
-                extracted.face_count, extracted.vertex_count, number_text(extracted.deviation).c_str(),
-                percent_text(extracted.deviation, diagonal).c_str());
-  }
-  return Outcome::Done;
+  const Result<Destination> destination = check_destination_of(pairs->front(), format);
+  if (!destination) return tl::unexpected(destination.error());
+  return level ? extract_level_number(*this, input, *destination)
+               : extract_target(*this, input, targets->front(), *destination);
 }
 
 }  // namespace lodestone::tool

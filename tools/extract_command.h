@@ -1,10 +1,13 @@
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
+#include <optional>
+#include <string>
 
 #include <lodestone/core/result.h>
 
 #include "command.h"
+#include "file_words.h"
 #include "target_options.h"
 
 namespace CLI {
@@ -13,11 +16,12 @@ class App;
 
 namespace lodestone::tool {
 
-/// `lodestone extract`: one level out of a .glb's removal stream.
+/// `lodestone extract`: one level out of a file's removal stream, or one of its levels.
 struct ExtractCommand {
-  std::filesystem::path input;
-  std::filesystem::path output;
+  FileWords files;
+  std::string format = "glb";  ///< of what goes into a folder or to the standard output
   TargetOptions target;
+  std::optional<std::size_t> level;  ///< of those in the file, instead of a target
   bool quiet = false;
   bool strict = false;
 

@@ -5,6 +5,7 @@
 #include <lodestone/io/write_mesh.h>
 
 #include "colour_map.h"
+#include "file_words.h"
 #include "messages.h"
 
 namespace lodestone::tool {
@@ -29,7 +30,7 @@ Attribute colours(const Mesh& mesh, std::span<const float> errors, double upper)
 }  // namespace
 
 Result<void> check_heatmap_path(const std::filesystem::path& path) {
-  if (path.extension() == ".ply" || path.extension() == ".glb") return {};
+  if (lower_extension(path) == ".ply" || lower_extension(path) == ".glb") return {};
   return fail(ErrorCode::InvalidArgument, "--heatmap: " + quoted(path) + " does not end in .ply or .glb");
 }
 

@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <string>
-#include <string_view>
 
 #include <CLI/CLI.hpp>
 
 #include <lodestone/core/connectivity.h>
 #include <lodestone/io/asset.h>
-#include <lodestone/io/read_mesh.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
 
+#include "input_files.h"
 #include "json_text.h"
 #include "messages.h"
 #include "scene_totals.h"
@@ -38,12 +36,6 @@ constexpr std::array<KindName, 6> kKindNames = {{{VertexKind::Interior, "interio
 using KindCounts = std::array<std::size_t, kKindNames.size()>;
 
 std::string text_of(std::uint64_t number) { return std::to_string(number); }
-
-bool is_glb(const std::filesystem::path& path) {
-  char magic[4] = {};
-  std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
-  return std::string_view(magic, sizeof magic) == "glTF";
-}
 
 // A multi-LOD file: its levels, its stream, and what is left.
 
@@ -209,26 +201,13 @@ Result<void> add_mesh(const SceneMesh& mesh, Inventory& inventory) {
   return count_kinds(mesh, inventory.kinds);
 }
 
-/// Reads what build would; of files that it refuses, such as those with levels of other programs, the finest level.
-Result<Scene> read_any_scene(const std::filesystem::path& path) {
-  Result<Scene> scene = Scene::read(path);
-  if (scene || scene.error().code != ErrorCode::Unsupported) return scene;
-  Result<MeshFile> file = read_mesh(path);
-  if (!file) return tl::unexpected(file.error());
-  return Scene::from_mesh(std::move(*file), path.stem().string());
-}
-
-Result<Inventory> take_inventory(const std::filesystem::path& path) {
-  const Result<Scene> scene = read_any_scene(path);
-  if (!scene) return tl::unexpected(scene.error());
-  const Result<std::uint64_t> bytes = loaded_bytes(path);
-  if (!bytes) return tl::unexpected(bytes.error());
+Result<Inventory> take_inventory(const Scene& scene, std::uint64_t bytes) {
   Inventory inventory;
-  inventory.bytes = *bytes;
-  inventory.box = scene->box();
-  inventory.notes = scene->notes();
-  for (const AssemblyReport& dropped : scene->dropped()) inventory.assembly = inventory.assembly + dropped;
-  for (const SceneMesh& mesh : scene->meshes())
+  inventory.bytes = bytes;
+  inventory.box = scene.box();
+  inventory.notes = scene.notes();
+  for (const AssemblyReport& dropped : scene.dropped()) inventory.assembly = inventory.assembly + dropped;
+  for (const SceneMesh& mesh : scene.meshes())
     if (Result<void> done = add_mesh(mesh, inventory); !done) return tl::unexpected(done.error());
   return inventory;
 }
@@ -279,13 +258,13 @@ void print_inventory(const std::string& path, const Inventory& inventory) {
   for (const std::string& line : inventory.notes) std::printf("note: %s\n", line.c_str());
 }
 
-Result<Outcome> inspect_mesh(const std::filesystem::path& path, bool json) {
-  const Result<Inventory> inventory = take_inventory(path);
+Result<Outcome> inspect_scene(const std::string& path, const Scene& scene, std::uint64_t bytes, bool json) {
+  const Result<Inventory> inventory = take_inventory(scene, bytes);
   if (!inventory) return tl::unexpected(inventory.error());
   if (json) {
-    std::fputs(json_text(inventory_json(path.string(), *inventory)).c_str(), stdout);
+    std::fputs(json_text(inventory_json(path, *inventory)).c_str(), stdout);
   } else {
-    print_inventory(path.string(), *inventory);
+    print_inventory(path, *inventory);
   }
   return Outcome::Done;
 }
@@ -293,7 +272,7 @@ Result<Outcome> inspect_mesh(const std::filesystem::path& path, bool json) {
 }  // namespace
 
 void InspectCommand::add_to(CLI::App& app) {
-  app.add_option("X,-i,--input", input, "A .glb that lodestone build wrote, or any mesh file")
+  app.add_option("X,-i,--input", input, "A file that lodestone build wrote, or any mesh file; - for standard input")
       ->required()
       ->type_name("FILE");
   app.add_flag("--json", json, "Print JSON");
@@ -301,13 +280,10 @@ void InspectCommand::add_to(CLI::App& app) {
 }
 
 Result<Outcome> InspectCommand::run() const {
-  if (!is_glb(input)) return inspect_mesh(input, json);
-  const Result<Asset> asset = read_asset(input);
-  // A .glb from elsewhere may hold what only the general reader understands.
-  if (!asset && asset.error().code == ErrorCode::Unsupported) return inspect_mesh(input, json);
-  if (!asset) return tl::unexpected(asset.error());
-  if (asset->levels.size() < 2 && asset->streams.empty()) return inspect_mesh(input, json);
-  return inspect_asset(input.string(), *asset, json);
+  const Result<AssetOrScene> file = read_asset_or_scene(input);
+  if (!file) return tl::unexpected(file.error());
+  if (file->asset) return inspect_asset(input.string(), *file->asset, json);
+  return inspect_scene(input.string(), *file->scene, file->bytes, json);
 }
 
 }  // namespace lodestone::tool

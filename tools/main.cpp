@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "extract_command.h"
 #include "inspect_command.h"
 #include "messages.h"
+#include "words.h"
 
 namespace lodestone::tool {
 namespace {
@@ -49,24 +51,22 @@ ExitCode exit_code(ErrorCode code) {
 
 ExitCode exit_code(const Result<Outcome>& result) {
   if (result) return *result == Outcome::Done ? ExitCode::Done : ExitCode::TargetNotMet;
-  const Error& error = result.error();
-  const std::string where = error.byte_offset ? " (at byte " + std::to_string(*error.byte_offset) + ")" : "";
-  print_error(error.message + where);
-  return exit_code(error.code);
+  print_error(describe(result.error()));
+  return exit_code(result.error().code);
 }
 
 /// The commands and what runs each of them.
 class Program {
  public:
   Program() {
-    app_.set_version_flag("--version", "lodestone " LODESTONE_VERSION);
+    app_.set_version_flag("-V,--version", "lodestone " LODESTONE_VERSION);
     app_.footer(
         "Exit codes: 0 done, 1 usage, 2 input unreadable, 3 unsupported, 4 output not written,\n"
         "5 target not met (with --strict)\n\n"
         "Example:\n"
-        "  lodestone build bunny.obj -o bunny.glb\n"
+        "  lodestone bunny.obj bunny.glb        (the same as lodestone build bunny.obj -o bunny.glb)\n"
         "  lodestone extract bunny.glb --error 0.1% -o bunny-near.glb");
-    add("build", "Turn a mesh file into a progressive multi-LOD .glb", build_);
+    add("build", "Turn a mesh file into a progressive multi-LOD .glb or .gltf", build_);
     add("extract", "Take one level out of a .glb's removal stream", extract_);
     add("inspect", "Show the levels, faces, errors and bytes of a file", inspect_);
     add("compare", "Measure how far apart two surfaces are", compare_);
@@ -94,8 +94,15 @@ class Program {
 };
 
 ExitCode Program::run(int argument_count, const char* const* arguments) {
+  Result<std::vector<std::string>> words =
+      spell_out(app_, {arguments + std::min(argument_count, 1), arguments + argument_count});
+  if (!words) {
+    print_error(words.error().message);
+    return ExitCode::Usage;
+  }
   try {
-    app_.parse(argument_count, arguments);
+    std::reverse(words->begin(), words->end());  // as the parser takes them
+    app_.parse(std::move(*words));
   } catch (const CLI::ParseError& error) {
     // Help and version are thrown too, with the code 0; only real errors are ours to word.
     if (error.get_exit_code() == 0) {

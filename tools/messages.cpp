@@ -15,6 +15,11 @@ void print_error(std::string_view message) { print_line("error", message); }
 
 void print_warning(std::string_view message) { print_line("warning", message); }
 
+std::string describe(const Error& error) {
+  const std::string where = error.byte_offset ? " (at byte " + std::to_string(*error.byte_offset) + ")" : "";
+  return error.message + where;
+}
+
 std::string quoted(std::string_view text) { return std::string(1, '\'').append(text).append(1, '\''); }
 
 std::string quoted(const std::filesystem::path& path) { return quoted(std::string_view(path.string())); }

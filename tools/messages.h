@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lodestone/core/assemble.h>
+#include <lodestone/core/result.h>
 
 namespace lodestone::tool {
 
@@ -14,6 +15,9 @@ void print_error(std::string_view message);
 
 /// Prints `lodestone: warning: …` to standard error.
 void print_warning(std::string_view message);
+
+/// Returns an error's message, with its place in the file where it has one.
+std::string describe(const Error& error);
 
 /// Returns a user's text as messages show it: in single quotes.
 std::string quoted(std::string_view text);

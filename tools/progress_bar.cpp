@@ -1,6 +1,7 @@
 #include "progress_bar.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -24,17 +25,35 @@ bool stderr_is_terminal() {
 #endif
 }
 
+/// A rough number is all an estimate is worth.
+std::string duration_text(double seconds) {
+  constexpr double kMinute = 60, kHour = 3600;
+  if (seconds < 2 * kMinute) return std::to_string(std::lround(seconds)) + " s";
+  if (seconds < 2 * kHour) return std::to_string(std::lround(seconds / kMinute)) + " min";
+  return std::to_string(std::lround(seconds / kHour)) + " h";
+}
+
 }  // namespace
 
-ProgressBar::ProgressBar(bool wanted) : shown_(wanted && stderr_is_terminal()) {}
+ProgressBar::ProgressBar(bool wanted)
+    : shown_(wanted && stderr_is_terminal()), begin_(std::chrono::steady_clock::now()) {}
 
-void ProgressBar::start(std::string stage) {
+void ProgressBar::start_piece(std::string title, double begin, double end) {
+  title_ = std::move(title);
+  piece_begin_ = begin;
+  piece_end_ = end;
+  stage_begin_ = stage_end_ = 0;
+}
+
+void ProgressBar::start(std::string stage, double share) {
   stage_ = std::move(stage);
+  stage_begin_ = stage_end_;
+  stage_end_ += share;
   if (shown_) draw(0);
 }
 
-void ProgressBar::update(double share) {
-  if (shown_ && std::chrono::steady_clock::now() - last_draw_ >= kRedrawInterval) draw(share);
+void ProgressBar::update(double done) {
+  if (shown_ && std::chrono::steady_clock::now() - last_draw_ >= kRedrawInterval) draw(done);
 }
 
 void ProgressBar::clear() {
@@ -42,13 +61,25 @@ void ProgressBar::clear() {
   drawn_ = false;
 }
 
-void ProgressBar::draw(double share) {
-  const int filled = static_cast<int>(std::clamp(share, 0.0, 1.0) * kBarWidth);
+double ProgressBar::overall(double done) const {
+  const double of_piece = stage_begin_ + std::clamp(done, 0.0, 1.0) * (stage_end_ - stage_begin_);
+  return std::clamp(piece_begin_ + of_piece * (piece_end_ - piece_begin_), 0.0, 1.0);
+}
+
+void ProgressBar::draw(double done) {
+  last_draw_ = std::chrono::steady_clock::now();
+  const double share = overall(done);
+  const int filled = static_cast<int>(share * kBarWidth);
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  std::fprintf(stderr, "\r\033[K%s [%s] %3.0f%%", stage_.c_str(), bar.c_str(), 100 * std::clamp(share, 0.0, 1.0));
+  std::string left;
+  if (share > 0) {
+    const double elapsed = std::chrono::duration<double>(last_draw_ - begin_).count();
+    left = ", " + duration_text(elapsed * (1 - share) / share) + " left";
+  }
+  std::fprintf(stderr, "\r\033[K[%s] %3.0f%%%s, %s%s", bar.c_str(), 100 * share, left.c_str(), title_.c_str(),
+               stage_.c_str());
   std::fflush(stderr);
   drawn_ = true;
-  last_draw_ = std::chrono::steady_clock::now();
 }
 
 void SharedProgress::add_part(double weight) {

@@ -1,5 +1,6 @@
 #include "staged_file.h"
 
+#include <algorithm>
 #include <random>
 #include <string>
 #include <system_error>
@@ -84,6 +85,30 @@ Result<void> StagedFile::commit() {
   return {};
 }
 
+MadeFolders::~MadeFolders() {
+  std::error_code not_empty;
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, not_empty);
+}
+
+Result<void> MadeFolders::make(const fs::path& folder) {
+  fs::path path;
+  for (const fs::path& part : folder) {
+    path /= part;
+    std::error_code error;
+    if (path.empty() || fs::is_directory(path, error)) continue;
+    if (!fs::create_directory(path, error))
+      return fail(ErrorCode::NotWritten,
+                  "cannot make the folder " + quoted(path) + ": " + (error ? error.message() : "a file has that name"));
+    made_.push_back(path);
+  }
+  return {};
+}
+
+Result<void> StagedFiles::add_with_folder(const fs::path& path, std::span<const std::byte> bytes) {
+  if (Result<void> made = folders_.make(path.parent_path()); !made) return made;
+  return add(path, bytes);
+}
+
 Result<void> StagedFiles::add(const fs::path& path, std::span<const std::byte> bytes) {
   files_.push_back(std::make_unique<StagedFile>(path));
   return files_.back()->write(bytes);
@@ -91,6 +116,10 @@ Result<void> StagedFiles::add(const fs::path& path, std::span<const std::byte> b
 
 Result<void> StagedFiles::add(const fs::path& path, const std::string& text) {
   return add(path, std::as_bytes(std::span(text)));
+}
+
+bool StagedFiles::has(const fs::path& path) const {
+  return std::any_of(files_.begin(), files_.end(), [&](const auto& file) { return file->destination() == path; });
 }
 
 Result<void> StagedFiles::commit() {

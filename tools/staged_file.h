@@ -28,6 +28,7 @@ class StagedFile {
   Result<void> write(std::span<const std::byte> bytes);
   /// Moves the staged file to its destination. Errors: NotWritten.
   Result<void> commit();
+  const std::filesystem::path& destination() const { return destination_; }
 
  private:
   std::filesystem::path destination_;  // as the user names it
@@ -35,17 +36,37 @@ class StagedFile {
   std::filesystem::path staged_;       // empty where nothing waits to be moved
 };
 
+/// Folders that are made for files; those that no file came to go away again.
+class MadeFolders {
+ public:
+  MadeFolders() = default;
+  ~MadeFolders();
+  MadeFolders(const MadeFolders&) = delete;
+  MadeFolders& operator=(const MadeFolders&) = delete;
+
+  /// Makes a folder and those above it, where they do not exist. Errors: NotWritten.
+  Result<void> make(const std::filesystem::path& folder);
+
+ private:
+  std::vector<std::filesystem::path> made_;  // outer ones first
+};
+
 /// Files that appear together, once all of them are written.
 class StagedFiles {
  public:
+  /// Adds a file, in a folder that is made where it does not exist. Errors: NotWritten.
+  Result<void> add_with_folder(const std::filesystem::path& path, std::span<const std::byte> bytes);
   /// Errors: NotWritten.
   Result<void> add(const std::filesystem::path& path, std::span<const std::byte> bytes);
   Result<void> add(const std::filesystem::path& path, const std::string& text);
+  /// Whether a file was added under this path.
+  bool has(const std::filesystem::path& path) const;
   /// Errors: NotWritten.
   Result<void> commit();
 
  private:
-  std::vector<std::unique_ptr<StagedFile>> files_;
+  MadeFolders folders_;
+  std::vector<std::unique_ptr<StagedFile>> files_;  // go before their folders do
 };
 
 /// Checks, before the long work starts, that a file can be put at `path`, by making one beside it for a moment.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,18 +13,24 @@ class App;
 
 namespace lodestone::tool {
 
-/// The options that say how far to simplify; at most one of them is given.
+/// The options that say how far to simplify; at most one of them is given. A list's values stand between commas or
+/// spaces, `10 %` is one of them.
 struct TargetOptions {
-  std::optional<std::string> ratio;
-  std::optional<std::string> faces;    ///< comma-separated whole numbers
-  std::optional<std::string> error;    ///< comma-separated error sizes
-  std::optional<std::string> epsilon;  ///< comma-separated numbers
+  std::vector<std::string> ratio;    ///< shares, as the next in one or more lists
+  std::vector<std::string> faces;    ///< whole numbers
+  std::vector<std::string> error;    ///< error sizes
+  std::vector<std::string> epsilon;  ///< numbers
 
   /// Adds them to a command, under a heading of its help; `lists` says there whether it takes several values.
   void add_to(CLI::App& app, const char* group, bool lists);
   /// Returns the targets in the order given; none if no option is.
   /// Errors: InvalidArgument for more than one option, or a value that is wrong, naming it.
   Result<std::vector<LevelTarget>> parse() const;
+  /// Whether one share is asked for, which then holds from each level to the next.
+  bool is_one_ratio() const;
+  /// Returns a sentence for each error that may not mean what its number says: a plain one that is large for a scene of
+  /// this diagonal, a length where the file's unit is not known to be the metre. Pre: `parse` has no error.
+  std::vector<std::string> remarks(double diagonal, bool in_metres) const;
 
  private:
   int given_count() const;

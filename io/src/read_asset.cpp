@@ -8,6 +8,7 @@
 
 #include <lodestone/core/assemble.h>
 #include <lodestone/io/file.h>
+#include <lodestone/io/read_mesh.h>
 
 #include "gltf_flatten.h"
 #include "gltf_primitive.h"
@@ -176,15 +177,10 @@ Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
 
 Result<Asset> read_asset(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  std::uint64_t beside_bytes = 0;
-  const auto fetch = [&](const std::filesystem::path& relative) {
-    auto file = read_file(path.parent_path() / relative);
-    if (file) beside_bytes += file->size();
-    return file;
-  };
+  const auto fetch = [&](const std::filesystem::path& relative) { return read_file(path.parent_path() / relative); };
   auto asset = read_asset_of(bytes, fetch);
   if (!asset) return tl::unexpected<Error>(with_path(std::move(asset).error(), path));
-  asset->total_bytes += beside_bytes;
+  LODESTONE_TRY(asset->total_bytes, loaded_bytes(path));
   return asset;
 }
 

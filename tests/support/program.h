@@ -38,12 +38,13 @@ inline std::string quoted(const std::string& word) {
   return out.append(1, '\'');
 }
 
-/// Runs the lodestone program under test, without a terminal.
-inline ProgramRun run_program(const std::vector<std::string>& arguments) {
+/// Runs the lodestone program under test, without a terminal; `input` is what its standard input reads.
+inline ProgramRun run_program(const std::vector<std::string>& arguments,
+                              const std::filesystem::path& input = "/dev/null") {
   const ScratchDirectory scratch;
   std::string command = quoted(LODESTONE_PROGRAM);
   for (const std::string& argument : arguments) command.append(" ").append(quoted(argument));
-  command.append(" </dev/null >").append(quoted((scratch / "out").string()));
+  command.append(" <").append(quoted(input.string())).append(" >").append(quoted((scratch / "out").string()));
   command.append(" 2>").append(quoted((scratch / "err").string()));
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(scratch / "out"), file_text(scratch / "err")};
