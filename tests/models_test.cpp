@@ -3,6 +3,8 @@
 #include <lodestone/io/read_mesh.h>
 #include <lodestone/io/stream_format.h>
 #include <lodestone/lod/cursor.h>
+#include <lodestone/lod/deviation.h>
+#include <lodestone/lod/placement.h>
 #include <lodestone/lod/simplify.h>
 
 #include "support/data.h"
@@ -74,6 +76,27 @@ TEST_CASE("a rod that is all slivers reaches every ratio") {
   const auto result = simplify(file->mesh);
   REQUIRE(result);
   CHECK(face_counts(result->mesh).front() <= 8);
+}
+
+TEST_CASE("a part from engineering, all needles, keeps to a hundredth of a percent at half of its faces") {
+  const auto path = model("field/cad-part.obj");
+  LODESTONE_SKIP_UNLESS(path, "no models: set LODESTONE_DATA to their folder");
+  const auto file = read_mesh(*path);
+  REQUIRE(file);
+  const double diagonal = bounding_box(file->mesh).diagonal();
+  const auto result = simplify(file->mesh);
+  REQUIRE(result);
+  Cursor cursor(result->mesh);
+  for (const auto& [faces, most] : {std::pair{1500, 2e-5}, {1000, 5e-5}, {890, 5e-5}, {445, 2e-4}}) {
+    INFO(faces << " faces");
+    cursor.seek(position_for_faces(result->mesh, static_cast<std::uint64_t>(faces)));
+    const Mesh level = extract_level(result->mesh, cursor);
+    for (const Mesh& mesh : {level, optimise_placement(file->mesh, level)}) {
+      const Deviation deviation = measure_deviation(file->mesh, mesh);
+      CHECK(deviation.maximum() < most * diagonal);
+      CHECK(deviation.mean_normal_angle < 0.01);
+    }
+  }
 }
 
 TEST_CASE("the model that comes with the repository comes back from its stream bit for bit") {

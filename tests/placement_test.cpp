@@ -9,6 +9,7 @@
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
 
+#include "support/cad_shapes.h"
 #include "support/mesh_properties.h"
 
 namespace lodestone::test {
@@ -143,6 +144,19 @@ TEST_CASE("borders and corners stay: a flat square is still the same square") {
   const Mesh fitted = optimise_placement(mesh, level_of(mesh, 0.1));
   CHECK(surface_area(fitted) == Approx(1).epsilon(1e-5));
   CHECK(rms(mesh, fitted) < 1e-6);
+}
+
+TEST_CASE("levels that lie on the original stay there to the last bit that counts, and needles are fitted, too") {
+  for (const TriangleSoup& soup : {cut_box(24), askew(cut_box(24)), crowded_box(6), askew(crowded_box(6))}) {
+    const Mesh mesh = mesh_of(soup);
+    const Mesh fitted = optimise_placement(mesh, level_of(mesh, 0.2));
+    CHECK(measure_deviation(mesh, fitted).maximum() < 2e-6 * bounding_box(mesh).diagonal());
+  }
+  for (const TriangleSoup& soup : {rod(96), askew(rod(96)), turned_shaft(20)}) {
+    const Mesh mesh = mesh_of(soup);
+    const Mesh level = level_of(mesh, 0.2);
+    CHECK(rms(mesh, optimise_placement(mesh, level)) < 0.95 * rms(mesh, level));
+  }
 }
 
 TEST_CASE("attributes follow where vertices go, each on its side of the seam") {

@@ -182,6 +182,37 @@ TEST_CASE("flat and straight parts go at no deviation") {
   CHECK(face_counts(flat_result.mesh)[position_for_deviation(flat_result.mesh, 1e-6)] == 2);
 }
 
+TEST_CASE(
+    "flat sides of engineering shapes empty first, at no error, however thin their faces and near the next error") {
+  const auto farthest_at = [](const TriangleSoup& soup, std::size_t faces) {
+    const Mesh mesh = mesh_of(soup);
+    SimplifyOptions options;
+    options.measure_step = 0;
+    const SimplifyResult result = simplified(mesh, options);
+    Cursor cursor(result.mesh);
+    cursor.seek(position_for_faces(result.mesh, faces));
+    const Mesh level = extract_level(result.mesh, cursor);
+    CHECK(level.face_count() == faces);
+    return measure_deviation(mesh, level).maximum() / bounding_box(mesh).diagonal();
+  };
+  for (const int n : {12, 48}) {
+    INFO(n << " points along an edge");
+    CHECK(farthest_at(cut_box(n), 12) < 1e-6);
+    CHECK(farthest_at(askew(cut_box(n)), 12) < 1e-6);
+  }
+  for (const int n : {4, 8}) {
+    INFO(n << " squares along an edge");
+    CHECK(farthest_at(crowded_box(n), 12) < 1e-6);
+    CHECK(farthest_at(askew(crowded_box(n)), 12) < 1e-6);
+  }
+  for (const int arc : {4, 8}) {
+    INFO(arc << " steps around a corner");
+    const std::size_t outline = 4 * (static_cast<std::size_t>(arc) + 1);
+    CHECK(farthest_at(rounded_plate(arc, 40), 4 * outline - 4) < 1e-6);
+    CHECK(farthest_at(askew(rounded_plate(arc, 40)), 4 * outline - 4) < 1e-6);
+  }
+}
+
 TEST_CASE("selection: at most the faces asked for, and the fewest within the error asked for") {
   const Mesh mesh = mesh_of(terrain(24, 9));
   const SimplifyResult result = simplified(mesh);

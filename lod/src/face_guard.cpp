@@ -9,10 +9,10 @@ namespace {
 
 constexpr double kMinCosine = 0.5;  // of the angle a face may turn by in one go
 constexpr double kMinShape = 0.02;  // a face's height over its longest edge
+constexpr double kSliverKeeps = 0.98;  // of its shape, in one go, where that is less
 
-constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
-constexpr double kFacesWell = 0.5;        // a face that looked within 60° of the original's way …
-constexpr double kTurnsLittle = 0.87;     // … and has turned by less than 30° since does not look away from there
+constexpr double kFacesWell = 0.5;     // a face that looked within 60° of the original's way …
+constexpr double kTurnsLittle = 0.87;  // … and has turned by less than 30° since does not look away from there
 
 double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
@@ -41,9 +41,10 @@ void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions) {
       const Vec3 b = mesh.corner_position(3 * f + 1);
       const Vec3 c = mesh.corner_position(3 * f + 2);
       const Vec3 p(positions[v[0]]), q(positions[v[1]]), r(positions[v[2]]);
-      // What was a sliver may stay one, as long as it gets no worse.
+      // What was a sliver may stay one, as long as it gets hardly worse.
       const double new_shape = shape(p, q, r);
-      if (keeps_direction(p, q, r, cross(b - a, c - a)) && (new_shape > kMinShape || new_shape >= shape(a, b, c)))
+      if (keeps_direction(p, q, r, cross(b - a, c - a)) &&
+          (new_shape > kMinShape || new_shape >= kSliverKeeps * shape(a, b, c)))
         continue;
       for (const Index i : v) positions[i] = mesh.positions[i];
       changed = true;
@@ -51,14 +52,16 @@ void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions) {
   }
 }
 
-double OriginalGuard::farthest(const Mesh& level) {
+OriginalGuard::Survey OriginalGuard::survey(const Mesh& level, const SampleNorm& norm) {
   standing_.resize(level.face_count());
-  double distance = 0;
+  Survey result;
   for (Index f = 0; f < level.face_count(); ++f) {
-    standing_[f] = look_at(corners_of(level, f, level.positions), kNoIndex);
-    distance = std::max(distance, standing_[f].distance);
+    const double share = 0.5 * length(area_vector(level, f)) / kPointsOfFace;
+    standing_[f] = look_at(corners_of(level, f, level.positions), standing_[f].near);
+    result.farthest = std::max(result.farthest, standing_[f].distance);
+    for (const double distance : standing_[f].inside) result.error += share * norm.error(distance * distance);
   }
-  return distance;
+  return result;
 }
 
 bool OriginalGuard::keep_faces_near(const Mesh& level, std::vector<Vec3f>& positions) {
@@ -99,16 +102,17 @@ OriginalGuard::Corners OriginalGuard::corners_of(const Mesh& level, Index face, 
 /// `near` is a face of the original near there, if known.
 OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near) const {
   const auto& [a, b, c] = corners;
-  Standing result{corners, 0, -1, near};
+  Standing result{corners, 0, -1, near, {}};
   const auto visit = [&](const Vec3& point) {
     const SurfaceIndex::Hit hit = index_.nearest(point, std::numeric_limits<double>::infinity(), result.near);
     result.distance = std::max(result.distance, hit.distance);
     result.near = hit.face;
+    return hit.distance;
   };
   for (const Vec3& corner : corners) visit(corner);
   const Vec3 normal = normalized(cross(b - a, c - a));
   for (std::size_t k = 0; k < kPointsOfFace; ++k) {
-    visit(point_on_triangle(a, b, c, k));
+    result.inside[k] = visit(point_on_triangle(a, b, c, k));
     result.facing = std::max(result.facing, dot(normal, normalized(area_vector(original_, result.near))));
   }
   return result;

@@ -7,6 +7,8 @@
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/deviation.h>
 
+#include "fit_samples.h"
+
 namespace lodestone::detail {
 
 /// Whether a triangle may replace one of normal `before` (of any length): it does not turn far, nor is it a sliver.
@@ -23,8 +25,12 @@ class OriginalGuard {
   /// `original` outlives the guard.
   explicit OriginalGuard(const Mesh& original) : original_(original), index_(original) {}
 
-  /// Returns the distance from the original of the farthest of all faces.
-  double farthest(const Mesh& level);
+  /// How a level's faces lie to the original, by some points of each.
+  struct Survey {
+    double farthest = 0;  ///< distance
+    double error = 0;     ///< a norm, summed over the points, each with the area it stands for
+  };
+  Survey survey(const Mesh& level, const SampleNorm& norm);
 
   /// From now on no face may be farther than that from the original.
   void set_reach(double reach) { reach_ = reach; }
@@ -39,12 +45,15 @@ class OriginalGuard {
   bool lets_pass(const std::array<Corners, 2>& now, const std::array<Corners, 2>& before) const;
 
  private:
+  static constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
+
   /// How a face stood to the original when it was last looked at.
   struct Standing {
     Corners corners;
     double distance = std::numeric_limits<double>::infinity();  // of the farthest of its points
     double facing = -1;     // the cosine of the least angle between its normal and the original's at one of its points
     Index near = kNoIndex;  // an original face there
+    std::array<double, kPointsOfFace> inside{};  // distances of the points that are not corners
   };
 
   static Corners corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions);

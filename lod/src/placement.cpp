@@ -24,6 +24,7 @@
 #include "face_guard.h"
 #include "fit_samples.h"
 #include "sparse_system.h"
+#include "triangle.h"
 
 namespace lodestone {
 namespace {
@@ -50,6 +51,12 @@ struct Effort {
 };
 constexpr Effort kEffort = {1, 3, 0.985};
 constexpr Effort kEffortForFew = {6, 12, 0.999};
+
+// At so many points of the original, spread over its faces, a fit is compared with what was there before; at least and
+// at most so many of each face.
+constexpr std::size_t kCheckedPoints = 20'000;
+constexpr std::size_t kFewestOfFace = 3;
+constexpr std::size_t kMostOfFace = 12;
 
 /// Which of a level's vertices lie where fixed ones of the original do.
 std::vector<std::uint8_t> find_fixed(const Mesh& original, const Mesh& level,
@@ -96,7 +103,8 @@ bool has_layers(const std::vector<MeshEdge>& edges) {
 class Fitting {
  public:
   Fitting(const Mesh& original, Mesh& level, const PlacementOptions& options)
-      : level_(level),
+      : original_(original),
+        level_(level),
         options_(options),
         is_fine_(static_cast<double>(level.face_count()) >= kFineShare * static_cast<double>(original.face_count())),
         edges_(list_edges(level)),
@@ -119,8 +127,9 @@ class Fitting {
   void assemble(SparseSystem& system) const;
   void add_lines(SparseSystem& system) const;
   void move();
-  double reach();
+  double forward_error() const;
 
+  const Mesh& original_;
   Mesh& level_;
   const PlacementOptions& options_;
   bool is_fine_;
@@ -238,17 +247,35 @@ void Fitting::move() {
   level_.positions = std::move(positions);
 }
 
-/// How far the two surfaces are from each other now.
-double Fitting::reach() {
-  double distance = guard_.farthest(level_);
-  for (const SurfaceSample& sample : samples_.all()) distance = std::max(distance, std::sqrt(sample.squared_distance));
-  return distance;
+/// The sum again, over points inside the original's faces that the fit does not go by: these stand for their areas even
+/// where large faces meet small ones at an angle.
+double Fitting::forward_error() const {
+  const SurfaceIndex surface(level_);
+  const std::size_t count = std::clamp(kCheckedPoints / original_.face_count(), kFewestOfFace, kMostOfFace);
+  double sum = 0;
+  Index near = kNoIndex;
+  for (Index f = 0; f < original_.face_count(); ++f) {
+    const double share = 0.5 * length(area_vector(original_, f)) / static_cast<double>(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3 point = point_on_triangle(original_.corner_position(3 * f), original_.corner_position(3 * f + 1),
+                                           original_.corner_position(3 * f + 2), k + 1);
+      const SurfaceIndex::Hit hit = surface.nearest(point, std::numeric_limits<double>::infinity(), near);
+      near = hit.face;
+      sum += share * norm_.error(hit.distance * hit.distance);
+    }
+  }
+  return sum;
 }
 
 void Fitting::run() {
   assign();
   choose_norm();
-  guard_.set_reach(reach());
+  const OriginalGuard::Survey survey = guard_.survey(level_, norm_);
+  double reach = survey.farthest;
+  for (const SurfaceSample& sample : samples_.all()) reach = std::max(reach, std::sqrt(sample.squared_distance));
+  guard_.set_reach(reach);
+  const Mesh unfitted = level_;
+  const double error_of_unfitted = is_fine_ ? forward_error() + survey.error : 0;
   double best = error();
   Mesh best_level = level_;
   const Effort effort = samples_.all().size() <= kFewSamples ? kEffortForFew : kEffort;
@@ -264,6 +291,8 @@ void Fitting::run() {
     if (settled && i + 1 >= effort.turning) break;
   }
   level_ = std::move(best_level);
+  // Where most faces have no error yet there is little to gain, and the samples may mislead.
+  if (is_fine_ && forward_error() + guard_.survey(level_, norm_).error > error_of_unfitted) level_ = unfitted;
 }
 
 /// Leaves out vertices and wedges that no face uses.

@@ -21,6 +21,7 @@ namespace {
 constexpr double kMinCosine = 0.2;       // of the angle that faces may turn, at first
 constexpr double kMinShape = 1e-3;       // a new face's height over its longest edge, where there are no slivers yet
 constexpr double kLeastHeight = 4;       // of a face whose normal says something, over the rounding of coordinates
+constexpr double kFreeDistance = 8;      // what rounding of coordinates, and of distances from them, may pretend
 constexpr double kSameShape = 1e-6;      // relative; shapes that differ by less are the same
 constexpr std::size_t kFullyRanked = 3;  // triangulations, by swept volume, whose distances are measured
 constexpr double kForgiven = 0.7;        // share of the distances there were before that a removal is not charged for
@@ -77,6 +78,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
   const Mesh& mesh = state.mesh;
   rounding_ = rounding_of(mesh);
+  rounded_square_ = kFreeDistance * kFreeDistance * rounding_ * rounding_;
   if (mesh.wedge_count() == mesh.vertex_count()) return;
   wedges_ = Grouping(mesh.vertex_count(), mesh.wedge_count(), [&](Index wedge) { return mesh.wedge_vertex[wedge]; });
 }
@@ -594,7 +596,8 @@ double RemovalEvaluator::added_squared_distance(const Sector& sector, Triangles 
     for (std::size_t i = 0; i < nearest_.size(); ++i) nearest_[i] = std::min(nearest_[i], entry.squared_distance[i]);
   }
   double sum = 0;
-  for (std::size_t i = 0; i < nearest_.size(); ++i) sum += static_cast<double>(weights_[i] * nearest_[i]);
+  for (std::size_t i = 0; i < nearest_.size(); ++i)
+    sum += static_cast<double>(weights_[i] * beyond_rounding(nearest_[i]));
   return std::max(sum - kForgiven * distance_before_, kLeastCharged * sum);
 }
 
@@ -694,7 +697,9 @@ double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
                       distance_.data());
     for (std::size_t p = 0; p < nearest_.size(); ++p) nearest_[p] = std::min(nearest_[p], distance_[p]);
   }
-  return std::accumulate(nearest_.begin(), nearest_.end(), 0.0);
+  double sum = 0;
+  for (const float squared_distance : nearest_) sum += static_cast<double>(beyond_rounding(squared_distance));
+  return sum;
 }
 
 /// What borders and feature lines are charged for their own displacement: √(√A · D) each, a length, with A the area it
@@ -713,7 +718,7 @@ double RemovalEvaluator::line_cost(Index vertex) const {
     if (line.carries_from) add_removed(line.from);
     add_removed(line.to);
     const double area = 0.5 * length(cross(a - center_, b - center_));
-    const double distance = std::sqrt(squared_distance);
+    const double distance = squared_distance > rounded_square_ ? std::sqrt(squared_distance) : 0;
     sum += line.weight * std::max(std::sqrt(std::sqrt(area) * distance), kLeastLine * distance);
   }
   return sum;

@@ -21,7 +21,7 @@
 namespace lodestone::detail {
 
 /// Larger rings wait until their neighbours' removals have shrunk them.
-inline constexpr std::size_t kMaxRing = 64;
+inline constexpr std::size_t kMaxRing = 250;
 
 /// Larger polygons are filled with fans alone; up to here the triangulation that sweeps the least volume is found, too.
 inline constexpr int kMaxSearchedPolygon = 16;
@@ -177,6 +177,11 @@ class RemovalEvaluator {
   bool turns_texture(const Sector& sector, PolygonTriangle t) const;
   Evaluation combine(const RemovalRecord& record);
 
+  /// Rounding takes points off planes and lines; that must not make a removal dearer than one next to it.
+  float beyond_rounding(float squared_distance) const {
+    return squared_distance > static_cast<float>(rounded_square_) ? squared_distance : 0;
+  }
+
   std::size_t ring_size() const { return ring_position_.size(); }
   std::size_t ring_number(const Sector& sector, std::size_t corner) const {
     if (sector.is_moved() && corner + 1 == sector.size()) return sector.target;
@@ -205,7 +210,8 @@ class RemovalEvaluator {
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;
-  double rounding_ = 0;  // how far from their true places coordinates may be
+  double rounding_ = 0;        // how far from their true places coordinates may be
+  double rounded_square_ = 0;  // a squared distance that may be rounding alone
 
   Star star_;
   Vec3 center_;

@@ -146,6 +146,8 @@ void Simplifier::evaluate(Index vertex) {
 
 /// Fills `candidates_` with the cheapest share of the vertices, in order of (cost, number).
 ///
+/// What costs nothing goes before all else, even where only a few of such vertices may go at once.
+///
 /// Costs mostly rise, so a vertex whose surroundings have changed keeps its old cost until that brings it in here; then
 /// it is evaluated anew, and stays if it is still as cheap as the rest. Returns whether any vertex was left to look at.
 bool Simplifier::choose_candidates() {
@@ -170,7 +172,8 @@ bool Simplifier::choose_candidates() {
   const auto cheaper = [&](Index a, Index b) { return cost_[a] != cost_[b] ? cost_[a] < cost_[b] : a < b; };
   const auto last = candidates_.begin() + static_cast<std::ptrdiff_t>(count - 1);
   std::nth_element(candidates_.begin(), last, candidates_.end(), cheaper);
-  limit_ = cost_[*last];
+  const bool any_free = std::any_of(candidates_.begin(), last, [&](Index v) { return cost_[v] == 0; });
+  limit_ = any_free ? 0 : cost_[*last];
   candidates_.resize(count);
   for (const Index v : candidates_)
     if (stale_[v] != 0) evaluate(v);
@@ -266,7 +269,8 @@ void Simplifier::update_dirty() {
     }
   for (const Index site : dirty_) {
     stale_[site] = 1;
-    if (cost_[site] == kIllegal) evaluate(site);  // it may be legal now
+    // It may be legal now; and on flat sides costs fall, too, as what has been in the way goes.
+    if (cost_[site] == kIllegal || limit_ == 0) evaluate(site);
   }
 }
 

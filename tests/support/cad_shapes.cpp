@@ -280,6 +280,25 @@ TriangleSoup cut_box(int n) {
   return prism(outline, 1);
 }
 
+TriangleSoup rounded_plate(int arc, int n) {
+  constexpr double kRadius = 0.2;
+  const Point2 corners[] = {
+      {3 - kRadius, kRadius}, {3 - kRadius, 2 - kRadius}, {kRadius, 2 - kRadius}, {kRadius, kRadius}};
+  Outline outline;
+  for (int k = 0; k < 4; ++k) {
+    add_arc(outline.outer, corners[k], kRadius, 0.25 * (k - 1), 0.25 * k, arc);
+    Loop straight;  // from the end of this arc to the start of the next
+    add_arc(straight, corners[k], kRadius, 0.25 * k, 0, 1);
+    add_arc(straight, corners[(k + 1) % 4], kRadius, 0.25 * k, 0, 1);
+    for (int i = 0; i <= n; ++i) {
+      const double t = static_cast<double>(i) / (n + 1);
+      outline.outer.push_back(
+          {straight[0].x + (straight[1].x - straight[0].x) * t, straight[0].y + (straight[1].y - straight[0].y) * t});
+    }
+  }
+  return prism(outline, 0.3);
+}
+
 TriangleSoup crowded_box(int n) {
   return box_of_squares(n, [&](const std::array<int, 3>& at) {
     const auto crowd = [&](int i) { return std::pow(static_cast<double>(i) / n, 4.0); };
@@ -414,6 +433,7 @@ std::vector<CadShape> cad_shapes(int detail) {
   std::vector<CadShape> shapes = {
       {"cut-box", cut_box(12 * d)},
       {"crowded-box", crowded_box(4 + 2 * d)},
+      {"rounded-plate", rounded_plate(4 * d, 8 * d)},
       {"rod", rod(48 * d)},
       {"disc", disc(48 * d)},
       {"drilled-plate", drilled_plate(2 * d, 2, 12)},

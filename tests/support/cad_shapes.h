@@ -20,6 +20,9 @@ struct CadShape {
 TriangleSoup cut_box(int n);
 /// A box whose sides are n × n squares that crowd towards one corner, down to faces a thousand times as long as wide.
 TriangleSoup crowded_box(int n);
+/// A plate with rounded corners of `arc` steps each, and n points along each of its straight sides, none of which its
+/// shape needs.
+TriangleSoup rounded_plate(int arc, int n);
 /// A long cylinder of two triangles for each side, its ends fans of slivers.
 TriangleSoup rod(int sides);
 /// A disc of the same, wide and thin.
