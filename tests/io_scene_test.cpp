@@ -619,6 +619,42 @@ TEST_CASE("animation pointers reach all that a mesh, a primitive or a material h
         before);
 }
 
+/// Two nodes that show one mesh of a strip of 4 × 1, so far apart and so large, below one node or as roots.
+GltfMaker two_strips(double apart, double scale, bool one_root) {
+  GltfMaker maker = strips(1, 4);
+  maker.add("nodes",
+            {{"name", "other"}, {"mesh", 0}, {"translation", {apart, 0, 0}}, {"scale", {scale, scale, scale}}});
+  maker.json["scenes"][0]["nodes"] = {0, 1};
+  if (!one_root) return maker;
+  maker.add("nodes", {{"name", "root"}, {"children", {0, 1}}});
+  maker.json["scenes"][0]["nodes"] = {2};
+  return maker;
+}
+
+/// MSFT_screencoverage of both nodes.
+std::pair<GltfJson, GltfJson> coverages(GltfMaker maker) {
+  const Scene scene = read(maker);
+  std::vector<LeveledMesh> levels = halved(scene, 3);
+  for (const std::size_t level : {1, 2})
+    levels[0].levels[level].deviation.forward.rms = 0.01 * static_cast<double>(level);
+  const GltfFile out = GltfFile::from_glb(checked(encode_scene(scene, levels, {})).glb);
+  const auto of = [&](const char* name) { return (*lod_node(out, name))["extras"]["MSFT_screencoverage"]; };
+  return {of("node_LOD0"), of("other_LOD0")};
+}
+
+TEST_CASE("parts of one object change their level together, objects each by itself") {
+  for (const bool one_root : {false, true}) {
+    const auto [touching, touched] = coverages(two_strips(4, 1, one_root));
+    CHECK(touching == touched);
+  }
+  const auto [near, far] = coverages(two_strips(100, 1, true));
+  CHECK(near == far);
+  const auto [alone, other] = coverages(two_strips(100, 2, false));
+  CHECK(alone != near);
+  const auto [house, ground] = coverages(two_strips(0, 100, false));
+  CHECK(house == alone);
+}
+
 TEST_CASE("each level has materials of its own, variants' too, and the same textures in them") {
   GltfMaker maker = strips(2, 4);
   maker.add("materials", {{"name", "first"}, {"normalTexture", {{"index", 0}}}});

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include <lodestone/io/screen_coverage.h>
+
 #include "asset_files.h"
 #include "build_options.h"
 #include "messages.h"
@@ -16,7 +18,7 @@ namespace lodestone::tool {
 namespace {
 
 /// Raised whenever a member changes its meaning or goes away.
-constexpr int kIndexSchemaVersion = 1;
+constexpr int kIndexSchemaVersion = 2;
 
 /// What the names of levels begin with, in files of their own.
 std::string level_stem(const BuildCommand& options) { return options.output.stem().string() + "_LOD"; }
@@ -74,18 +76,25 @@ Result<void> check_page_path(const BuildCommand& options, std::size_t level_coun
   return check_destination(*options.html);
 }
 
+/// The scene as one object: when to change from file to file.
+std::vector<double> scene_coverages(const BuildReport& report) {
+  std::vector<double> errors;
+  for (const BuildReport::Level& level : report.levels) {
+    const Deviation& d = level.deviation;
+    errors.push_back(visible_error({std::max(d.forward.rms, d.backward.rms), d.mean_normal_angle, report.input.area,
+                                    static_cast<double>(level.face_count)}));
+  }
+  const Vec3 sides = report.input.box.high - report.input.box.low;
+  return screen_coverages(std::max({sides.x, sides.y, sides.z}), errors);
+}
+
 /// The index of `--profile files`: which file to load when.
 Json index_json(const BuildReport& report) {
   Json levels = Json::array();
-  double coverage = 1;
+  const std::vector<double> coverages = scene_coverages(report);
   for (std::size_t i = 0; i < report.levels.size(); ++i) {
     const BuildReport::Level& level = report.levels[i];
     const Deviation& d = level.deviation;
-    const bool last = i + 1 == report.levels.size();
-    if (!last) {
-      const double next = screen_coverage(report.input.box.diagonal(), report.levels[i + 1].deviation.maximum());
-      coverage = std::min(coverage, next);
-    }
     levels.push_back({{"file", std::filesystem::path(report.files[i].path).filename().string()},
                       {"faces", level.face_count},
                       {"vertices", level.vertex_count},
@@ -95,7 +104,7 @@ Json index_json(const BuildReport& report) {
                         {"mean", std::max(d.forward.mean, d.backward.mean)},
                         {"rms", std::max(d.forward.rms, d.backward.rms)}}},
                       {"error_threshold", level.deviation_bound},
-                      {"screen_coverage", last ? 0 : coverage}});
+                      {"screen_coverage", coverages[i]}});
   }
   return {{"schema_version", kIndexSchemaVersion},
           {"generator", "lodestone " LODESTONE_VERSION},

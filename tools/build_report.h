@@ -24,6 +24,7 @@ struct BuildReport {
     std::size_t face_count = 0;    ///< drawn: all instances counted
     std::size_t vertex_count = 0;  ///< drawn
     Box box;                       ///< of the scene
+    double area = 0;               ///< drawn, squared world units
     AssemblyReport assembly;       ///< of all meshes
     std::vector<std::string> notes;
     std::vector<std::filesystem::path> files;  ///< that it needs beside it, relative to its folder

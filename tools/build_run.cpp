@@ -64,8 +64,9 @@ Result<void> check_input(const std::filesystem::path& path, const Scene& scene) 
 }
 
 BuildReport::Input input_report(const std::filesystem::path& path, const Scene& scene) {
-  BuildReport::Input input{path.string(), 0, 0, scene.box(), assembly_of(scene), scene.notes(), scene.files()};
+  BuildReport::Input input{path.string(), 0, 0, scene.box(), 0, assembly_of(scene), scene.notes(), scene.files()};
   for (const SceneMesh& mesh : scene.meshes()) {
+    input.area += mesh.area;
     input.face_count += mesh.mesh.face_count() * mesh.instance_count;
     input.vertex_count += mesh.mesh.vertex_count() * mesh.instance_count;
   }

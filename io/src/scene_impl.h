@@ -27,12 +27,21 @@ struct SourcePrimitive {
   std::size_t target_count = 0;      ///< morph targets
 };
 
+/// How a node shows its mesh.
+struct NodePresence {
+  Box box;                         ///< in the world; of its largest instance
+  double scale = 0;                ///< the largest stretch of its instances: world units per mesh unit
+  double area = 0;                 ///< of all its instances, squared world units
+  std::size_t instance_count = 0;  ///< 1, but for EXT_mesh_gpu_instancing
+};
+
 /// Where a scene mesh comes from.
 struct MeshSource {
   std::size_t mesh = 0;                     ///< its number in the document
   std::vector<MeshColumn> columns;          ///< of all primitives together
   std::vector<SourcePrimitive> primitives;  ///< as many as the document's mesh has
   std::vector<std::size_t> nodes;           ///< that show it in a scene, ascending
+  std::vector<NodePresence> presence;       ///< one for each of the nodes
 };
 
 /// An image that gets a bufferView of its own.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace lodestone::detail {
 namespace {
@@ -36,29 +35,4 @@ Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const S
   return numbers;
 }
 
-/// Values fall from level to level; the last is 0, so that nothing ever vanishes.
-Json coverage_of_levels(std::span<const AssetLevel> levels) {
-  const double diagonal = bounding_box(levels[0].mesh).diagonal();
-  Json coverage = Json::array();
-  double last = 1;
-  for (std::size_t i = 1; i < levels.size(); ++i) {
-    last = std::min(last, screen_coverage(diagonal, levels[i].deviation.maximum()));
-    coverage.push_back(last);
-  }
-  coverage.push_back(0);
-  return coverage;
-}
-
 }  // namespace lodestone::detail
-
-namespace lodestone {
-
-/// A sphere as wide as the diagonal D spans D/d pixels when d is one, and so covers π/4·(D/d)² of 1920·1080.
-double screen_coverage(double diagonal, double deviation) {
-  constexpr double kPixels = 1920.0 * 1080.0;
-  const double pixels = diagonal / deviation;
-  const double share = std::numbers::pi / 4 * pixels * pixels / kPixels;
-  return std::isnan(share) ? 1 : std::min(share, 1.0);
-}
-
-}  // namespace lodestone

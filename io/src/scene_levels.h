@@ -17,7 +17,4 @@ bool same_mesh(const Mesh& a, const Mesh& b);
 Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const SceneMesh& mesh, std::size_t node_count,
                    std::optional<double> position_step);
 
-/// Returns MSFT_screencoverage: the share of the screen's area below which the next level is good enough.
-Json coverage_of_levels(std::span<const AssetLevel> levels);
-
 }  // namespace lodestone::detail

@@ -50,6 +50,8 @@ Result<std::vector<Transform>> read_copies(const GltfDocument& document, const J
   return copies;
 }
 
+const Box kNowhere{Vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL), Vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
+
 void grow(Box& box, const Vec3& p) {
   box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
   box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
@@ -73,7 +75,14 @@ class InstanceMeasure {
     SceneMesh& mesh = scene_.meshes[number];
     mesh.scale = 0;
     const Skinner skinner(mesh.mesh.attributes);
-    for (const std::size_t node : scene_.sources[number].nodes) LODESTONE_CHECK(add_node(mesh, skinner, node));
+    for (const std::size_t node : scene_.sources[number].nodes) {
+      here_ = NodePresence{};
+      LODESTONE_CHECK(add_node(mesh, skinner, node));
+      mesh.scale = std::max(mesh.scale, here_.scale);
+      mesh.area += here_.area;
+      mesh.instance_count += here_.instance_count;
+      scene_.sources[number].presence.push_back(here_);
+    }
     // What is drawn as a point everywhere has no size in the world, but errors must not vanish by it.
     if (!(mesh.scale > 0) || !std::isfinite(mesh.scale)) mesh.scale = 1;
     return {};
@@ -94,7 +103,7 @@ class InstanceMeasure {
     LODESTONE_TRY(const auto copies, read_copies(scene_.document, *node, where));
     for (const Transform& copy : copies) {
       const Transform world = places_[index].world * copy;
-      mesh.scale = std::max(mesh.scale, world.stretch());
+      here_.scale = std::max(here_.scale, world.stretch());
       LODESTONE_CHECK(add_points(mesh, [&](std::size_t, const Vec3& p) { return world.exact_point(p); }));
     }
     return {};
@@ -102,7 +111,7 @@ class InstanceMeasure {
 
   Result<void> add_skinned(SceneMesh& mesh, const Skinner& skinner, std::span<const Transform> joints) {
     mesh.skinned = true;
-    for (const Transform& joint : joints) mesh.scale = std::max(mesh.scale, joint.stretch());
+    for (const Transform& joint : joints) here_.scale = std::max(here_.scale, joint.stretch());
     return add_points(mesh, [&](std::size_t wedge, const Vec3& p) {
       return skinner.empty() ? p : skinner.pose(wedge, joints).exact_point(p);
     });
@@ -110,16 +119,19 @@ class InstanceMeasure {
 
   template <class Place>
   Result<void> add_points(SceneMesh& mesh, const Place& place) {
-    ++mesh.instance_count;
+    ++here_.instance_count;
     placed_ += mesh.mesh.wedge_count();
     if (placed_ > kMaxPlacedPoints)
       return fail(ErrorCode::LimitExceeded, text("gltf: the scene has more than ", kMaxPlacedPoints, " points"));
     points_.clear();
+    Box box = kNowhere;
     for (std::size_t wedge = 0; wedge < mesh.mesh.wedge_count(); ++wedge) {
       points_.push_back(place(wedge, Vec3(mesh.mesh.positions[mesh.mesh.wedge_vertex[wedge]])));
-      grow(box_, points_.back());
+      grow(box, points_.back());
     }
-    mesh.area += area_of(mesh.mesh, points_);
+    for (const Vec3& corner : {box.low, box.high}) grow(box_, corner);
+    if (!(here_.box.diagonal() > box.diagonal())) here_.box = box;
+    here_.area += area_of(mesh.mesh, points_);
     return {};
   }
 
@@ -127,7 +139,8 @@ class InstanceMeasure {
   std::span<const NodePlace> places_;
   std::vector<Vec3> points_;
   std::size_t placed_ = 0;
-  Box box_{Vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL), Vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
+  NodePresence here_;  // of the node at hand
+  Box box_ = kNowhere;
 };
 
 }  // namespace

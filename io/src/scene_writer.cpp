@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include <lodestone/io/scene.h>
+#include <lodestone/io/screen_coverage.h>
 
 #include "glb_builder.h"
 #include "scene_buffers.h"
@@ -18,6 +20,7 @@
 #include "scene_levels.h"
 #include "scene_materials.h"
 #include "scene_nodes.h"
+#include "scene_objects.h"
 #include "scene_primitives.h"
 #include "stream_extension.h"
 #include "text.h"
@@ -107,6 +110,7 @@ class SceneWriter {
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_finest(mesh);
     if (with_streams_)
       for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_stream(mesh);
+    choose_coverages();
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
       for (const std::size_t node : impl_.sources[mesh].nodes) add_nodes(mesh, node);
     move_channels();
@@ -227,6 +231,37 @@ class SceneWriter {
     options_.measure(measured_);
   }
 
+  /// The parts of an object change their level together, at the object's size on the screen.
+  void choose_coverages() {
+    if (range_.count == 1) return;
+    for (const SceneObject& object : find_objects(impl_)) {
+      std::vector<double> errors;
+      for (std::size_t level = 0; level < range_.count; ++level)
+        errors.push_back(visible_error(look_of(object, level)));
+      const Vec3 sides = object.box.high - object.box.low;
+      const std::vector<double> values = screen_coverages(std::max({sides.x, sides.y, sides.z}), errors);
+      for (const ScenePart& part : object.parts) coverages_[impl_.sources[part.mesh].nodes[part.node]] = values;
+    }
+  }
+
+  LevelLook look_of(const SceneObject& object, std::size_t level) const {
+    LevelLook look;
+    double squares = 0, angle = 0;
+    for (const ScenePart& part : object.parts) {
+      const NodePresence& presence = impl_.sources[part.mesh].presence[part.node];
+      const Deviation& d = stated_levels(part.mesh)[level].deviation;
+      const double rms = presence.scale * std::max(d.forward.rms, d.backward.rms);
+      squares += presence.area * rms * rms;
+      angle += presence.area * d.mean_normal_angle;
+      look.area += presence.area;
+      look.face_count += static_cast<double>(written_[part.mesh][level].face_count * presence.instance_count);
+    }
+    if (!(look.area > 0)) return look;
+    look.rms_deviation = std::sqrt(squares / look.area);
+    look.normal_angle = angle / look.area;
+    return look;
+  }
+
   bool shows(std::size_t mesh, std::size_t level) const { return !written_[mesh][level].primitives.empty(); }
 
   /// The finest level takes the mesh's own place.
@@ -279,7 +314,7 @@ class SceneWriter {
     const std::string name = node_name(mesh, node);
     if (shows(mesh, 0) && stays_in_place(builder_.document(), node)) {
       Json& finest = builder_.at("nodes", node);
-      set_finest_members(mesh, finest, builder_.document()["nodes"].size());
+      set_finest_members(mesh, node, finest, builder_.document()["nodes"].size());
       add_lower_nodes(mesh, node, node, name);
     } else {
       const std::size_t first = add_finest_node(mesh, node, name);
@@ -295,19 +330,19 @@ class SceneWriter {
     move_mesh_members(builder_.at("nodes", node), finest);
     if (!shows(mesh, 0))
       for (const char* key : {"mesh", "skin", "weights"}) finest.erase(key);
-    set_finest_members(mesh, finest, builder_.document()["nodes"].size() + 1);
+    set_finest_members(mesh, node, finest, builder_.document()["nodes"].size() + 1);
     const std::size_t first = builder_.add("nodes", std::move(finest));
     builder_.at("nodes", node)["children"].push_back(first);
     return first;
   }
 
-  /// `lower` is the number that the node of level 1 will have, the others follow it.
-  void set_finest_members(std::size_t mesh, Json& finest, std::size_t lower) {
+  /// `node` had the mesh in the document; `lower` will be the number of the node of level 1, the others follow it.
+  void set_finest_members(std::size_t mesh, std::size_t node, Json& finest, std::size_t lower) {
     Json ids = Json::array();
     for (std::size_t level = 1; level < range_.count; ++level) ids.push_back(lower + level - 1);
     finest["extensions"]["MSFT_lod"] = {{"ids", std::move(ids)}};
     finest["extras"]["lodestone"] = numbers_of(mesh, 0);
-    finest["extras"]["MSFT_screencoverage"] = coverage_of_levels(stated_levels(mesh));
+    finest["extras"]["MSFT_screencoverage"] = coverages_.at(node);
   }
 
   /// Adds the coarser levels below `finest`; `node` had the mesh in the document.
@@ -370,8 +405,9 @@ class SceneWriter {
   std::vector<std::vector<ChannelMap::Place>> lower_meshes_;  // by mesh
   std::vector<std::vector<LevelGeometry>> geometry_;          // by mesh and level, as the next
   std::vector<std::vector<WrittenLevel>> written_;
-  std::vector<std::vector<AssetLevel>> measured_;  // as decoded; only with options_.measure
-  std::vector<Json> originals_;                    // the meshes as they were in the document
+  std::map<std::size_t, std::vector<double>> coverages_;  // by node of the document: MSFT_screencoverage
+  std::vector<std::vector<AssetLevel>> measured_;         // as decoded; only with options_.measure
+  std::vector<Json> originals_;                           // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
   std::vector<AssetFile> beside_;                  // images
   AssetLayout layout_;

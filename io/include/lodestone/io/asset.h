@@ -79,10 +79,6 @@ struct EncodedAsset {
   AssetLayout layout;
 };
 
-/// Returns the share of the screen's area below which something of a diagonal is well shown by a level that deviates so
-/// much: the deviation is then at most one pixel of a screen of 1920 × 1080. At most 1.
-double screen_coverage(double diagonal, double deviation);
-
 /// A multi-LOD file as read back, its scene flattened into world space.
 struct Asset {
   struct Level {
@@ -94,7 +90,7 @@ struct Asset {
     double mean_deviation = 0;      ///< weighted by the area that each mesh covers in the world
     double rms_deviation = 0;       ///< weighted alike
     double curvature_error = 0;     ///< the largest
-    double screen_coverage = 0;     ///< the largest
+    double screen_coverage = 0;     ///< of the screen's height, the largest
     bool draco = false;
   };
   struct Stream {
