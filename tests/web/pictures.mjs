@@ -1,4 +1,4 @@
-// Takes pictures of every level beside its input, at the distance where the level is used, and measures their likeness.
+// Takes pictures of every level beside its input, at the distance where the level takes over, and measures their likeness.
 // The same check must fail on levels with cracks and with scrambled texture coordinates.
 //
 //   node pictures.mjs [--models FOLDER] --output FOLDER [NAME …]     of the assets that assets.mjs has built there
@@ -14,8 +14,8 @@ import { Log, openSite, readOptions, skip } from './suite.mjs';
 const subjects = ['suzi', 'tube', 'spot_triangulated', 'FlightHelmet', 'SheenCloth', 'Lantern_nobasecolor', 'cakeBirthday',
   'RobotExpressive', 'Knight'];
 
-// A level is used from where its deviation is a pixel. A gap of two is one that nobody should have to look at.
-const pixelsOfDeviation = 1;
+// The screen that MSFT_screencoverage is for. A gap of two pixels is one that nobody should have to look at.
+const pixelsOfHeight = 1080;
 const pixelsOfGap = 2;
 
 // Smaller than this an object is little more than the windows that pictures are compared by.
@@ -24,16 +24,10 @@ const smallestJudged = 48; // pixels
 // Levels as they should be: 0.89 and more, most above 0.95. Cracked ones: 0.83 and less, scrambled ones 0.70 and less.
 const bound = 0.85;
 
-/** Returns the largest deviation of each level in the scene's units, finest first. */
-function deviationsOf(gltf) {
-  const chains = lodChains(gltf);
-  const levels = Math.max(...chains.map((chain) => chain.length));
-  const inScene = (node) => {
-    const { maximum_deviation: deviation = 0, world_scale: scale } = gltf.nodes[node].extras.lodestone;
-    return deviation * scale;
-  };
-  return Array.from({ length: levels }, (_, level) =>
-    Math.max(...chains.map((chain) => inScene(chain[Math.min(level, chain.length - 1)]))));
+/** Returns the length of a pixel where each level takes over, finest first, in the scene's units: `size` is its longest side. */
+function pixelsOfSwitches(gltf, size) {
+  const coverage = gltf.nodes[lodChains(gltf)[0][0]].extras.MSFT_screencoverage;
+  return coverage.map((_, level) => (level === 0 ? 0 : size / (pixelsOfHeight * coverage[level - 1])));
 }
 
 function describe(site, asset) {
@@ -86,8 +80,8 @@ async function checkAsset(log, studio, asset, plain) {
   const { input, result } = describe(studio, asset);
   const bytes = await readFile(plain.path);
   const gltf = parseGlb(bytes);
-  const full = await studio.page.ask((file) => window.openOriginal(file), input);
-  const pixels = deviationsOf(gltf).map((deviation) => Math.max(full, deviation / pixelsOfDeviation));
+  const { pixel: full, size } = await studio.page.ask((file) => window.openOriginal(file), input);
+  const pixels = pixelsOfSwitches(gltf, size).map((pixel) => Math.max(full, pixel));
   const gaps = pixels.map((pixel) => pixelsOfGap * pixel);
   const coloured = result.texture ||
     gltf.materials?.some(({ pbrMetallicRoughness: surface }) => surface?.baseColorTexture);

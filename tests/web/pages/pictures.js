@@ -69,13 +69,14 @@ let original;
 let asset;
 let sphere;
 
-/** Opens an input; returns the length of a pixel where it fills the picture. */
+/** Opens an input; returns the length of a pixel where it fills the picture, and its longest side. */
 window.openOriginal = async (file) => {
   original?.dispose();
   original = await open(file);
   drawnOriginals = new Map();
-  sphere = new THREE.Box3().setFromObject(original.root).getBoundingSphere(new THREE.Sphere());
-  return nearest() * pixelAngle;
+  const box = new THREE.Box3().setFromObject(original.root);
+  sphere = box.getBoundingSphere(new THREE.Sphere());
+  return { pixel: nearest() * pixelAngle, size: Math.max(...box.getSize(new THREE.Vector3()).toArray()) };
 };
 
 /** Opens what was made of it. */
