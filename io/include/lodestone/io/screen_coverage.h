@@ -15,7 +15,7 @@ struct LevelLook {
 
 /// Returns the length in the world that must be at most a pixel long for a level to look like the object: twice the
 /// root mean square of its distances, and what its normals turn over the length of a face. Infinity for a level of no
-/// faces. Source: pictures of levels at many distances, by structural similarity; see CONTRIBUTING.md.
+/// faces. Source: pictures of levels at many distances, by structural similarity; tests/web/pictures.mjs takes them.
 double visible_error(const LevelLook& level);
 
 /// Returns for each level, finest first, the share of the screen's height that an object spans where the next level
