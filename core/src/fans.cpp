@@ -144,7 +144,10 @@ void SheetFinder::cut_folds() {
     const Index other = across_[c];
     if (other == kNoIndex || other < c) continue;
     const bool layered = is_layered(mesh_.corner_vertex(c)) || is_layered(mesh_.corner_vertex(other));
-    layered&& lies_on(c, other) ? cut(c) : sheets_.join(face_of_corner(c), face_of_corner(other));
+    if (layered && lies_on(c, other))
+      cut(c);
+    else
+      sheets_.join(face_of_corner(c), face_of_corner(other));
   }
 }
 

@@ -35,7 +35,9 @@ struct AssembledMesh {
 ///
 /// Points with equal coordinates become one vertex; points that also agree in every attribute byte become one wedge.
 /// Edges of more than two triangles and bow-tie vertices are cut: each sheet gets a vertex of its own, at the same
-/// position. `Connectivity` recognises those copies by their equal positions; they are removed together, so no crack opens.
+/// position. Sheets that lie on one another stay whole: at their edges triangles are neighbours as material, attributes
+/// and angles say. `Connectivity` recognises the copies of a vertex by their equal positions; they are removed together,
+/// so no crack opens.
 ///
 /// Pre: array lengths agree. Errors: InvalidArgument where an index or a length is out of range. Cost: O(n log n).
 Result<AssembledMesh> assemble(const TriangleSoup& soup);
