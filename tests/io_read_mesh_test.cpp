@@ -138,6 +138,18 @@ std::string polygon_file(const std::vector<Vec3f>& corners, const std::string& f
 
 }  // namespace
 
+TEST_CASE("where floats cannot hold the shape, a note says how far apart they are") {
+  const auto square_at = [](const std::string& x, const std::string& further) {
+    return "v " + x + " 0 0\nv " + further + " 0 0\nv " + x + " 20 0\nf 1 2 3\n";
+  };
+  const auto notes_of = [](const std::string& source) {
+    return all_notes(read_mesh_bytes(std::as_bytes(std::span(source)), "obj").value());
+  };
+  CHECK_THAT(notes_of(square_at("5000000", "5000015")), contains("they are 0.5 apart there, 2 % of the object"));
+  CHECK(notes_of(square_at("50000", "50015")).empty());
+  CHECK(notes_of(square_at("0", "15")).empty());
+}
+
 TEST_CASE("obj: coordinates are the nearest floats") {
   // The first lies just above the middle of two floats: rounded to double on the way, it would go to the even one.
   const MeshFile file =

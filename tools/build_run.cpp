@@ -88,10 +88,21 @@ std::string blocked_text(const BlockedCounts& blocked) {
   return "vertices left: " + (text.empty() ? "none" : text);
 }
 
-/// Two digits for a table and a report, in a fraction of the time that `compare` takes for its four.
-DeviationOptions level_measure() {
+// Two digits for a table and a report, in a fraction of the time that `compare` takes for its four.
+constexpr double kSceneSamples = 50'000;           // Each way, for a level of all meshes together.
+constexpr double kSceneAttributeSamples = 20'000;  // The same for attributes.
+constexpr double kLeastShare = 0.02;               // Of them for one mesh: its own numbers need some, too.
+
+/// How much of a scene's samples a mesh gets, by its faces: many small meshes cost little more than one large one.
+double share_of_samples(const Scene& scene, const Mesh& mesh) {
+  std::size_t all = 0;
+  for (const SceneMesh& other : scene.meshes()) all += other.mesh.face_count();
+  return std::max(static_cast<double>(mesh.face_count()) / static_cast<double>(all), kLeastShare);
+}
+
+DeviationOptions level_measure(double share = 1) {
   DeviationOptions options;
-  options.sample_count = 50'000;
+  options.sample_count = static_cast<std::size_t>(share * kSceneSamples);
   options.relative_tolerance = 0.01;
   return options;
 }
@@ -444,8 +455,9 @@ void BuildRun::measure_mesh_level(std::size_t mesh, std::size_t number, const Me
   const Mesh& whole = scene_->meshes()[mesh].mesh;
   BuildReport::MeshPart::Level& reported = report_.meshes[mesh].levels[number];
   reported.vertex_count = level.vertex_count();
-  reported.deviation = measure_deviation(whole, level, level_measure());
-  reported.attributes = measure_attributes(whole, level);
+  const double share = share_of_samples(*scene_, whole);
+  reported.deviation = measure_deviation(whole, level, level_measure(share));
+  reported.attributes = measure_attributes(whole, level, static_cast<std::size_t>(share * kSceneAttributeSamples));
 }
 
 void BuildRun::report_measured(std::size_t number) {

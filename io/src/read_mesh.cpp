@@ -8,6 +8,7 @@
 #include <lodestone/io/file.h>
 
 #include "bytes.h"
+#include "float_spacing.h"
 #include "gltf_container.h"
 #include "soup_file.h"
 #include "text.h"
@@ -116,6 +117,7 @@ Result<MeshFile> detail::read_mesh_bytes(std::span<const std::byte> bytes, const
   LODESTONE_TRY(SoupFile file, read_soup(bytes, extension, fetch));
   tidy_normals(file);
   LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup));
+  if (auto note = coarse_floats(assembled.mesh)) file.notes.push_back(std::move(*note));
   return MeshFile{std::move(assembled.mesh), assembled.report, std::move(file.materials), std::move(file.images),
                   std::move(file.notes)};
 }

@@ -6,6 +6,7 @@
 #include <lodestone/io/stream_format.h>
 #include <lodestone/lod/cursor.h>
 
+#include "float_spacing.h"
 #include "gltf_flatten.h"
 #include "gltf_scene.h"
 #include "scene_images.h"
@@ -91,6 +92,7 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
     for (const std::string& name : joined->left_out)
       scene.notes.push_back(
           text("mesh ", number, ": attribute ", name, " is left out: glTF vertices have no such type"));
+    if (const auto note = coarse_floats(joined->mesh.mesh)) scene.notes.push_back(text("mesh ", number, ": ", *note));
     scene.meshes.push_back(std::move(joined->mesh));
     scene.sources.push_back(std::move(joined->source));
   }
