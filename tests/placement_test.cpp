@@ -70,6 +70,26 @@ TEST_CASE("fitting lets no face leave the surface, rough or smooth") {
   }
 }
 
+TEST_CASE("no fitted vertex leaves the original's box by more than the level was off") {
+  for (const NamedShape& shape : all_shapes()) {
+    const Mesh mesh = mesh_of(shape.soup);
+    if (mesh.face_count() == 0) continue;
+    const Box box = bounding_box(mesh);
+    for (const double ratio : {0.3, 0.1, 0.0}) {
+      const Mesh level = level_of(mesh, ratio);
+      if (level.face_count() == 0) continue;
+      const double off = measure_deviation(mesh, level).maximum();
+      double out = 0;
+      for (const Vec3f& stored : optimise_placement(mesh, level).positions) {
+        const Vec3 p(stored), below = box.low - p, above = p - box.high;
+        out = std::max({out, below.x, below.y, below.z, above.x, above.y, above.z});
+      }
+      INFO(shape.name << " at " << level.face_count() << " faces, which are " << off << " off");
+      CHECK(out <= 0.75 * off + 1e-6);
+    }
+  }
+}
+
 TEST_CASE("fitting makes fine levels nearer in mean, too, where most faces have no error at first") {
   for (const TriangleSoup& soup : {icosphere(3, 0.02, 3), torus(64, 32), terrain(40, 5)}) {
     const Mesh mesh = mesh_of(soup);

@@ -11,9 +11,8 @@
 
 #include "support/catch.h"
 #include "support/data.h"
-#include "support/gltf_file.h"
+#include "support/gltf_shapes.h"
 #include "support/program.h"
-#include "support/shapes.h"
 
 using namespace lodestone;
 using namespace lodestone::test;
@@ -22,15 +21,6 @@ namespace {
 
 using Json = nlohmann::json;
 using Names = std::vector<std::string>;
-
-void add_mesh(GltfMaker& maker, const char* name, const TriangleSoup& soup) {
-  std::vector<float> positions;
-  for (const Vec3f& p : soup.positions) positions.insert(positions.end(), {p.x, p.y, p.z});
-  const std::size_t vertices = maker.add_floats(positions, "VEC3", 3);
-  const std::size_t indices = maker.add_accessor(soup.indices, 5125, "SCALAR", 1);
-  const GltfJson primitive = {{"attributes", {{"POSITION", vertices}}}, {"indices", indices}};
-  maker.add("meshes", {{"name", name}, {"primitives", GltfJson::array({primitive})}});
-}
 
 /// A large smooth ball, and a small rough one that stands there twice, once enlarged.
 struct SceneShop {

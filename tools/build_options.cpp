@@ -65,7 +65,7 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   const double ratio = given->empty() ? kDefaultRatio : given->front().value;
   std::vector<LevelTarget> levels;
   for (int i = 1; i < options.level_count.value_or(kDefaultLevelCount); ++i) {
-    levels.push_back({TargetKind::Faces, std::pow(ratio, i), true});
+    levels.push_back({TargetKind::Faces, std::pow(ratio, i), true, given->empty()});
   }
   return levels;
 }

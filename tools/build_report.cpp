@@ -28,6 +28,16 @@ Json target_json(const std::optional<LevelTarget>& target) {
   return {{std::string(name_of(target->kind)), target->value}};
 }
 
+Json beyond_json(double deviation) { return deviation > 0 ? Json(deviation) : Json(nullptr); }
+
+Json left_out_json(const BuildReport::LeftOut& left_out) {
+  return {{"target", target_json(left_out.target)},
+          {"target_met", left_out.met},
+          {"stopped_by", left_out.stopped_by},
+          {"deviation_beyond", beyond_json(left_out.deviation_beyond)},
+          {"level", left_out.level}};
+}
+
 Json level_json(const BuildReport::Level& level) {
   return {{"faces", level.face_count},
           {"vertices", level.vertex_count},
@@ -37,7 +47,8 @@ Json level_json(const BuildReport::Level& level) {
           {"bytes", level.bytes},
           {"target", target_json(level.target)},
           {"target_met", level.met},
-          {"stopped_by", level.stopped_by}};
+          {"stopped_by", level.stopped_by},
+          {"deviation_beyond", beyond_json(level.deviation_beyond)}};
 }
 
 Json stream_json(const BuildReport::Stream& stream) {
@@ -87,6 +98,12 @@ Json timings_json(const BuildReport::Timings& timings) {
   return {{"read", timings.read}, {"simplify", timings.simplify}, {"levels", timings.levels}, {"write", timings.write}};
 }
 
+/// Why a level is no coarser; for an error that stops what faces were asked for, the one that would have come next.
+std::string stopped_text(const BuildReport::Level& level, double diagonal) {
+  if (!(level.deviation_beyond > 0)) return level.stopped_by;
+  return level.stopped_by + ": " + percent_text(level.deviation_beyond, diagonal);
+}
+
 std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& level, double diagonal) {
   return {std::to_string(number),
           std::to_string(level.face_count),
@@ -94,7 +111,7 @@ std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& le
           percent_text(level.deviation.maximum(), diagonal),
           percent_text(std::max(level.deviation.forward.mean, level.deviation.backward.mean), diagonal),
           std::to_string(level.bytes),
-          level.stopped_by};
+          stopped_text(level, diagonal)};
 }
 
 }  // namespace
@@ -102,6 +119,8 @@ std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& le
 Json report_json(const BuildReport& report) {
   Json levels = Json::array();
   for (const BuildReport::Level& level : report.levels) levels.push_back(level_json(level));
+  Json left_out = Json::array();
+  for (const BuildReport::LeftOut& target : report.left_out) left_out.push_back(left_out_json(target));
   Json meshes = Json::array();
   for (const BuildReport::MeshPart& part : report.meshes) meshes.push_back(part_json(part));
   return {{"schema_version", kReportSchemaVersion},
@@ -109,6 +128,7 @@ Json report_json(const BuildReport& report) {
           {"input", input_json(report.input)},
           {"settings", report.settings},
           {"levels", levels},
+          {"left_out", left_out},
           {"stream", stream_json(report.stream)},
           {"meshes", meshes},
           {"output", output_json(report)},
@@ -121,6 +141,8 @@ void print_table(const BuildReport& report) {
   const double diagonal = report.input.box.diagonal();
   for (std::size_t i = 0; i < report.levels.size(); ++i) table.add(row_of(i, report.levels[i], diagonal));
   table.print();
+  for (const BuildReport::LeftOut& left_out : report.left_out)
+    if (left_out.met) std::printf("one level less: it would repeat level %zu\n", left_out.level);
   if (report.stream.bytes > 0) {
     std::printf("stream: %zu records in %zu rounds over a base of %zu faces, %llu bytes\n", report.stream.record_count,
                 report.stream.round_count, report.stream.base_face_count,

@@ -39,6 +39,15 @@ struct BuildReport {
     std::optional<LevelTarget> target;  ///< in absolute numbers; none for the whole mesh
     bool met = true;
     std::string stopped_by;  ///< faces, error, epsilon, stuck; whole for level 0
+    double deviation_beyond = 0;  ///< where an error stopped what faces were asked for: the bound of what comes nearest
+  };
+  /// A target that has no level of its own: the level would repeat another.
+  struct LeftOut {
+    LevelTarget target;
+    bool met = true;
+    std::string stopped_by;
+    double deviation_beyond = 0;  ///< as above
+    std::size_t level = 0;  ///< the one it would repeat
   };
   struct Stream {
     std::uint64_t bytes = 0;  ///< 0 where the file has none
@@ -78,6 +87,7 @@ struct BuildReport {
   Input input;
   Json settings;                   ///< the options as understood
   std::vector<Level> levels;       ///< finest first
+  std::vector<LeftOut> left_out;
   Stream stream;                   ///< of all meshes together
   std::vector<MeshPart> meshes;    ///< in the document's order
   std::string output_path;         ///< as given

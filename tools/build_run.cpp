@@ -88,6 +88,11 @@ std::string blocked_text(const BlockedCounts& blocked) {
   return "vertices left: " + (text.empty() ? "none" : text);
 }
 
+/// What was asked for.
+std::string target_text(const LevelTarget& target) {
+  return target.relative ? percent_text(target.value, 1) + " of the" : number_text(target.value, 15);
+}
+
 // Two digits for a table and a report, in a fraction of the time that `compare` takes for its four.
 constexpr double kSceneSamples = 50'000;           // Each way, for a level of all meshes together.
 constexpr double kSceneAttributeSamples = 20'000;  // The same for attributes.
@@ -139,7 +144,8 @@ class BuildRun {
   StopCriteria stop_criteria(const SceneMesh& mesh) const;
   void report_simplified(const SceneMesh& mesh, const SimplifyResult& result);
   std::vector<double> world_charges(const SimplifyResult& result, double scale) const;
-  std::vector<SceneChoice> choose_levels() const;
+  void choose_levels();
+  double world_beyond(const SceneChoice& choice) const;
   AssetOptions storage() const;
   double smallest_error() const;
   bool repeats(std::size_t mesh, std::size_t level) const;
@@ -149,7 +155,7 @@ class BuildRun {
   void take_mesh_level(LevelJob&& job);
   void report_level(const SceneChoice& choice);
   bool report_missed_targets() const;
-  std::string missed_faces(const std::string& targets) const;
+  std::string missed_faces(const std::string& targets, const std::string& faces, double beyond) const;
   std::string missed_errors(const std::string& targets) const;
   void add_note(const std::string& note);
   Result<void> encode_streams();
@@ -304,7 +310,7 @@ std::vector<double> BuildRun::world_charges(const SimplifyResult& result, double
 
 void BuildRun::make_levels() {
   progress_.start("making levels", kMakingShare);
-  choices_ = choose_levels();
+  choose_levels();
   levels_.resize(simplified_.size());
   std::vector<LevelJob> jobs;
   for (std::size_t mesh = 0; mesh < simplified_.size(); ++mesh)
@@ -355,15 +361,32 @@ std::vector<ScenePart> BuildRun::parts() const {
   return parts;
 }
 
-/// Finds each mesh's positions: the whole scene, then what answers the targets.
-std::vector<SceneChoice> BuildRun::choose_levels() const {
+/// Finds each mesh's positions: the whole scene, then what answers the targets. What would repeat the level before is
+/// left out.
+void BuildRun::choose_levels() {
   const std::vector<ScenePart> parts = this->parts();
-  std::vector<SceneChoice> choices{{{}, {}, true, "whole"}};
+  choices_ = {{{}, {}, true, "whole", {}}};
   for (const SimplifyResult& result : simplified_)
-    choices[0].positions.push_back(static_cast<Index>(result.mesh.record_count()));
-  for (const LevelTarget& target : targets_)
-    choices.push_back(choose_positions(parts, target, scope(), scene_->box().diagonal()));
-  return choices;
+    choices_[0].positions.push_back(static_cast<Index>(result.mesh.record_count()));
+  for (const LevelTarget& target : targets_) {
+    SceneChoice choice = choose_positions(parts, target, scope(), scene_->box().diagonal());
+    const std::vector<Index>& before = choices_.back().positions;
+    for (std::size_t i = 0; i < before.size() && !choice.met; ++i)
+      choice.positions[i] = std::min(choice.positions[i], before[i]);
+    if (choice.positions == before)
+      report_.left_out.push_back(
+          {choice.target, choice.met, choice.stopped_by, world_beyond(choice), choices_.size() - 1});
+    else
+      choices_.push_back(std::move(choice));
+  }
+}
+
+/// What faces asked for would have cost, in world units; 0 where no error stopped the level before them.
+double BuildRun::world_beyond(const SceneChoice& choice) const {
+  double largest = 0;
+  for (std::size_t i = 0; i < choice.beyond.size(); ++i)
+    largest = std::max(largest, choice.beyond[i] * scene_->meshes()[i].scale);
+  return largest;
 }
 
 /// Whether a mesh's level is the one before.
@@ -389,12 +412,14 @@ void BuildRun::report_level(const SceneChoice& choice) {
   if (number > 0) entry.target = choice.target;
   entry.met = choice.met;
   entry.stopped_by = choice.stopped_by;
+  entry.deviation_beyond = world_beyond(choice);
   report_.levels.push_back(std::move(entry));
 }
 
 void BuildRun::take_mesh_level(LevelJob&& job) {
   const SceneChoice& choice = choices_[job.level];
   job.made.stop_reason = choice.stopped_by;
+  if (!choice.beyond.empty()) job.made.deviation_beyond = choice.beyond[job.mesh];
   const float bound = simplified_[job.mesh].mesh.deviation[choice.positions[job.mesh]];
   report_.meshes[job.mesh].levels.push_back({job.made.mesh.face_count(), job.made.mesh.vertex_count(), {}, bound, {}});
   levels_[job.mesh].levels.push_back(std::move(job.made));
@@ -472,10 +497,12 @@ void BuildRun::report_measured(std::size_t number) {
   report_.levels[number].deviation = total.result();
 }
 
-std::string BuildRun::missed_faces(const std::string& targets) const {
-  return targets + " faces were asked for" + (options_.per_mesh ? " of each mesh, " : ", ") +
-         std::to_string(report_.levels.back().face_count) + " are the fewest there are; " +
-         blocked_text(report_.stream.blocked);
+/// `faces` are left, where fewer would have been off by up to `beyond`, or there are none.
+std::string BuildRun::missed_faces(const std::string& targets, const std::string& faces, double beyond) const {
+  const std::string why = beyond > 0 ? "fewer would be up to " + percent_text(beyond, scene_->box().diagonal()) + " off"
+                                     : "there are no fewer; " + blocked_text(report_.stream.blocked);
+  return targets + " faces were asked for" + (options_.per_mesh ? " of each mesh, " : ", ") + faces +
+         " are left: " + why;
 }
 
 /// Only quantisation is in the way of an error: the whole mesh has none.
@@ -487,19 +514,27 @@ std::string BuildRun::missed_errors(const std::string& targets) const {
 
 /// Says which levels have more faces or larger errors than asked for, and why; returns whether there are any.
 bool BuildRun::report_missed_targets() const {
-  std::string levels;
-  std::string targets;
+  std::string levels, targets, faces;
+  double beyond = 0;
   for (std::size_t i = 0; i < report_.levels.size(); ++i) {
+    std::string missed;
+    const auto miss = [&](const LevelTarget& target, double deviation_beyond) {
+      append_item(missed, target_text(target));
+      beyond = std::max(beyond, deviation_beyond);
+    };
     const BuildReport::Level& level = report_.levels[i];
-    if (level.met) continue;
+    if (!level.met) miss(*level.target, level.deviation_beyond);
+    for (const BuildReport::LeftOut& left_out : report_.left_out)
+      if (!left_out.met && left_out.level == i) miss(left_out.target, left_out.deviation_beyond);
+    if (missed.empty()) continue;
     append_item(levels, std::to_string(i));
-    append_item(targets, level.target->relative ? percent_text(level.target->value, 1) + " of the"
-                                                : number_text(level.target->value, 15));
+    append_item(targets, missed);
+    append_item(faces, std::to_string(level.face_count));
   }
-  if (levels.empty()) return false;
+  if (targets.empty()) return false;
+  const bool by_error = targets_.front().kind == TargetKind::Error;
   const std::string message = "target not met by level " + levels + ": " +
-                              (targets_.front().kind == TargetKind::Error ? missed_errors(targets)
-                                                                          : missed_faces(targets));
+                              (by_error ? missed_errors(targets) : missed_faces(targets, faces, beyond));
   options_.strict ? print_error(message) : print_warning(message);
   return true;
 }

@@ -142,9 +142,10 @@ Result<void> write_extracted(const std::filesystem::path& input, const Destinati
   return files.commit();
 }
 
-std::string missed_message(std::size_t face_count, const LevelTarget& target) {
-  return std::to_string(face_count) + " faces are the fewest the file has, " +
-         std::to_string(static_cast<std::uint64_t>(target.value)) + " were asked for";
+std::string missed_message(std::size_t face_count, const SceneChoice& choice) {
+  return std::to_string(face_count) + " faces are the fewest the file has" +
+         (choice.beyond.empty() ? ", " : " before its error leaps, ") +
+         std::to_string(static_cast<std::uint64_t>(choice.target.value)) + " were asked for";
 }
 
 /// Takes a level as it stands in the file.
@@ -169,7 +170,7 @@ Result<Outcome> extract_target(const ExtractCommand& options, const std::filesys
   const SceneChoice choice = choose_positions(parts_of(*streamed), requested, TargetScope::Scene, diagonal);
   const Extracted extracted = extract_positions(*streamed, choice.positions);
   if (!choice.met) {
-    const std::string message = missed_message(extracted.face_count, choice.target);
+    const std::string message = missed_message(extracted.face_count, choice);
     options.strict ? print_error(message) : print_warning(message);
     if (options.strict) return Outcome::TargetNotMet;
   }

@@ -20,6 +20,7 @@ struct LevelTarget {
   TargetKind kind = TargetKind::Faces;
   double value = 0;       ///< faces, mesh units, or the metric's own unit; a share of the whole if relative
   bool relative = false;  ///< to the full face count (Faces) or to the bounding-box diagonal (Error)
+  bool is_wish = false;   ///< of the default series: a level stops before its error leaps
 };
 
 /// What relative targets are relative to.

@@ -1,58 +1,106 @@
 #include "scene_target.h"
 
 #include <algorithm>
+#include <cmath>
 #include <queue>
 
-#include <lodestone/lod/cursor.h>
+#include "error_leap.h"
 
 namespace lodestone::tool {
 namespace {
 
-/// What is lost at a part's positions, made to fall from coarse to fine: bounds of deviations alone need not.
-std::vector<double> falling_losses(const ScenePart& part) {
-  std::vector<double> errors = part.loss;
-  if (errors.empty()) {
-    errors.assign(part.mesh->deviation.begin(), part.mesh->deviation.end());
-    for (double& error : errors) error *= part.scale;
-  }
-  for (double& error : errors) error *= part.importance;
+/// Makes errors fall from coarse to fine: bounds of deviations alone need not.
+std::vector<double> falling(std::vector<double> errors) {
   for (std::size_t p = errors.size() - 1; p-- > 0;) errors[p] = std::max(errors[p], errors[p + 1]);
   return errors;
 }
 
-/// Shares a number of faces among the parts.
-class FaceBudget {
- public:
-  explicit FaceBudget(std::span<const ScenePart> parts) : parts_(parts) {
-    for (const ScenePart& part : parts) {
-      errors_.push_back(falling_losses(part));
-      faces_.push_back(face_counts(*part.mesh));
-    }
+std::vector<double> deviations(const ScenePart& part) {
+  return falling({part.mesh->deviation.begin(), part.mesh->deviation.end()});
+}
+
+/// What is lost at a part's positions, in the unit that all parts share.
+std::vector<double> falling_losses(const ScenePart& part) {
+  std::vector<double> losses = part.loss;
+  if (losses.empty()) {
+    losses = deviations(part);
+    for (double& loss : losses) loss *= part.scale;
+  }
+  for (double& loss : losses) loss *= part.importance;
+  return falling(std::move(losses));
+}
+
+/// Of the whole mesh, which uses every vertex.
+double diagonal_of(const ProgressiveMesh& mesh) {
+  if (mesh.positions.empty()) return 0;
+  Vec3f low = mesh.positions.front(), high = low;
+  for (const Vec3f& p : mesh.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return length(Vec3(high) - Vec3(low));
+}
+
+/// A part's faces and errors by position.
+struct PartCurve {
+  PartCurve(const ScenePart& part, TargetScope scope, double scene_diagonal)
+      : faces(face_counts(*part.mesh)), errors(deviations(part)) {
+    size.mesh = diagonal_of(*part.mesh);
+    size.scene = scope == TargetScope::Scene ? scene_diagonal / part.scale : size.mesh;
+    // Only what may vanish has a base without faces, and vanishing is no leap then.
+    if (faces.front() > 0) before_leap = position_before_leap(*part.mesh, faces, errors, size);
   }
 
-  /// Returns the faces that are drawn with every part at full detail.
-  std::size_t drawn() const {
-    std::size_t faces = 0;
-    for (std::size_t i = 0; i < parts_.size(); ++i) faces += faces_[i].back() * parts_[i].instance_count;
-    return faces;
+  std::vector<Index> faces;
+  std::vector<double> errors;  // mesh units
+  LeapScale size;
+  Index before_leap = 0;
+};
+
+std::vector<PartCurve> curves_of(std::span<const ScenePart> parts, TargetScope scope, double scene_diagonal) {
+  std::vector<PartCurve> curves;
+  for (const ScenePart& part : parts) curves.emplace_back(part, scope, scene_diagonal);
+  return curves;
+}
+
+/// Shares a number of faces among the parts, none of which goes below its floor.
+class FaceBudget {
+ public:
+  FaceBudget(std::span<const ScenePart> parts, std::span<const PartCurve> curves, std::vector<Index> floors)
+      : parts_(parts), curves_(curves), floors_(std::move(floors)) {
+    for (const ScenePart& part : parts) losses_.push_back(falling_losses(part));
   }
 
   /// Returns the faces that are drawn at the positions given.
   std::size_t drawn(std::span<const Index> positions) const {
     std::size_t faces = 0;
-    for (std::size_t i = 0; i < parts_.size(); ++i) faces += faces_[i][positions[i]] * parts_[i].instance_count;
+    for (std::size_t i = 0; i < parts_.size(); ++i) faces += curves_[i].faces[positions[i]] * parts_[i].instance_count;
     return faces;
   }
 
-  /// Returns the positions within the budget, or the coarsest ones where even those exceed it.
+  bool can_meet(double budget) const { return static_cast<double>(drawn(floors_)) <= budget; }
+
+  /// Returns a share of each part's faces, or those of its floor where they are more: what the parts draw that cannot
+  /// have so few faces does not burden the others.
+  double fair(double share) const {
+    double faces = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const double own = std::floor(share * curves_[i].faces.back() * (1 + 1e-12));
+      const auto fewest = static_cast<double>(curves_[i].faces[floors_[i]]);
+      faces += std::max(own, fewest) * static_cast<double>(parts_[i].instance_count);
+    }
+    return faces;
+  }
+
+  /// Returns the positions within the budget, or the floors where even those exceed it.
   std::vector<Index> share(double budget) const {
     std::vector<double> thresholds;
-    for (const auto& errors : errors_) thresholds.insert(thresholds.end(), errors.begin(), errors.end());
+    for (const auto& losses : losses_) thresholds.insert(thresholds.end(), losses.begin(), losses.end());
     std::sort(thresholds.begin(), thresholds.end());
     const auto enough = std::partition_point(thresholds.begin(), thresholds.end(), [&](double threshold) {
       return static_cast<double>(drawn(within(threshold))) > budget;
     });
-    if (enough == thresholds.end()) return std::vector<Index>(parts_.size(), 0);
+    if (enough == thresholds.end()) return floors_;
     std::vector<Index> positions = within(*enough);
     spend(positions, budget);
     return positions;
@@ -61,48 +109,84 @@ class FaceBudget {
  private:
   std::vector<Index> within(double threshold) const {
     std::vector<Index> positions;
-    for (const auto& errors : errors_)
-      positions.push_back(static_cast<Index>(
-          std::partition_point(errors.begin(), errors.end(), [&](double e) { return e > threshold; }) -
-          errors.begin()));
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const auto first = std::partition_point(losses_[i].begin(), losses_[i].end(), [&](double e) { return e > threshold; });
+      positions.push_back(std::max(floors_[i], static_cast<Index>(first - losses_[i].begin())));
+    }
     return positions;
   }
 
   /// Refines the worst part again and again, as long as its next record fits; leaves no part with half a piece.
   void spend(std::vector<Index>& positions, double budget) const {
     struct Candidate {
-      double error;
+      double loss;
       std::size_t part;
       bool operator<(const Candidate& other) const {
-        return error != other.error ? error < other.error : part > other.part;
+        return loss != other.loss ? loss < other.loss : part > other.part;
       }
     };
     std::priority_queue<Candidate> queue;
-    for (std::size_t i = 0; i < parts_.size(); ++i) queue.push({errors_[i][positions[i]], i});
+    for (std::size_t i = 0; i < parts_.size(); ++i) queue.push({losses_[i][positions[i]], i});
     auto left = budget - static_cast<double>(drawn(positions));
     while (!queue.empty()) {
       const std::size_t i = queue.top().part;
       queue.pop();
       Index& position = positions[i];
-      if (position + 1 >= faces_[i].size()) continue;
-      const auto cost = static_cast<double>((faces_[i][position + 1] - faces_[i][position]) * parts_[i].instance_count);
+      const std::vector<Index>& faces = curves_[i].faces;
+      if (position + 1 >= faces.size()) continue;
+      const auto cost = static_cast<double>((faces[position + 1] - faces[position]) * parts_[i].instance_count);
       if (cost > left) continue;
       left -= cost;
-      queue.push({errors_[i][++position], i});
+      queue.push({losses_[i][++position], i});
     }
     for (std::size_t i = 0; i < parts_.size(); ++i)
       while (!is_whole(*parts_[i].mesh, positions[i])) --positions[i];
   }
 
   std::span<const ScenePart> parts_;
-  std::vector<std::vector<double>> errors_;
-  std::vector<std::vector<Index>> faces_;
+  std::span<const PartCurve> curves_;
+  std::vector<Index> floors_;
+  std::vector<std::vector<double>> losses_;
 };
 
-double diagonal_of(const ProgressiveMesh& mesh) {
-  Cursor cursor(mesh);
-  cursor.seek(static_cast<Index>(mesh.record_count()));
-  return bounding_box(extract_level(mesh, cursor)).diagonal();
+/// Notes that an error stopped a level, unless it is as coarse as can be.
+void note_stop(std::span<const ScenePart> parts, std::span<const PartCurve> curves, std::span<const Index> beyond,
+               SceneChoice& choice) {
+  choice.met = false;
+  choice.stopped_by = parts.empty() ? "stuck" : name_of(parts[0].end);
+  if (std::equal(beyond.begin(), beyond.end(), choice.positions.begin())) return;
+  choice.stopped_by = name_of(StopReason::Deviation);
+  for (std::size_t i = 0; i < parts.size(); ++i) choice.beyond.push_back(curves[i].errors[beyond[i]]);
+}
+
+bool is_burdened(std::span<const PartCurve> curves, std::span<const Index> positions, std::span<const Index> alone) {
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    if (is_burdened(curves[i].errors[positions[i]], curves[i].errors[alone[i]], curves[i].size)) return true;
+  return false;
+}
+
+SceneChoice share_faces(std::span<const ScenePart> parts, const LevelTarget& target, double diagonal) {
+  const std::vector<PartCurve> curves = curves_of(parts, TargetScope::Scene, diagonal);
+  std::vector<Index> whole, before_leap;
+  for (const PartCurve& curve : curves) {
+    whole.push_back(static_cast<Index>(curve.faces.size() - 1));
+    before_leap.push_back(curve.before_leap);
+  }
+  const FaceBudget free(parts, curves, std::vector<Index>(parts.size(), 0));
+  const std::size_t full = free.drawn(whole);
+  SceneChoice choice{resolve(target, {full, diagonal}), {}, true, std::string(name_of(target.kind)), {}};
+  const double budget = choice.target.value;
+  const std::vector<Index> nearest = free.share(budget);
+  choice.positions = nearest;
+  if (!target.is_wish && free.can_meet(budget)) return choice;
+
+  const FaceBudget guarded(parts, curves, before_leap);
+  const std::vector<Index> fair = guarded.share(std::max(budget, guarded.fair(budget / static_cast<double>(full))));
+  choice.positions = guarded.share(budget);
+  if (guarded.can_meet(budget) && !is_burdened(curves, choice.positions, fair)) return choice;
+  choice.positions = fair;
+  note_stop(parts, curves, nearest, choice);
+  return choice;
 }
 
 /// Answers a target that is relative to the part itself; errors are world units.
@@ -120,7 +204,7 @@ LevelChoice choose_for_part(const ScenePart& part, const LevelTarget& target) {
 }
 
 SceneChoice choose_each(std::span<const ScenePart> parts, const LevelTarget& target) {
-  SceneChoice choice{target, {}, true, std::string(name_of(target.kind))};
+  SceneChoice choice{target, {}, true, std::string(name_of(target.kind)), {}};
   bool all_stopped = !parts.empty();
   for (const ScenePart& part : parts) {
     const LevelChoice own = choose_for_part(part, target);
@@ -132,18 +216,26 @@ SceneChoice choose_each(std::span<const ScenePart> parts, const LevelTarget& tar
   return choice;
 }
 
+/// Faces for each part by itself.
+SceneChoice choose_faces_of_each(std::span<const ScenePart> parts, const LevelTarget& target) {
+  SceneChoice choice = choose_each(parts, target);
+  if (choice.met && !target.is_wish) return choice;
+  const std::vector<PartCurve> curves = curves_of(parts, TargetScope::Mesh, 0);
+  const std::vector<Index> nearest = choice.positions;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (target.is_wish || !choose_for_part(parts[i], target).met)
+      choice.positions[i] = std::max(choice.positions[i], curves[i].before_leap);
+  if (choice.positions != nearest) note_stop(parts, curves, nearest, choice);
+  return choice;
+}
+
 }  // namespace
 
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal) {
-  if (scope == TargetScope::Mesh) return choose_each(parts, target);
-  if (target.kind != TargetKind::Faces) return choose_each(parts, resolve(target, {0, diagonal}));
-  const FaceBudget budget(parts);
-  const LevelTarget absolute = resolve(target, {budget.drawn(), diagonal});
-  SceneChoice choice{absolute, budget.share(absolute.value), true, std::string(name_of(absolute.kind))};
-  choice.met = static_cast<double>(budget.drawn(choice.positions)) <= absolute.value;
-  if (!choice.met) choice.stopped_by = parts.empty() ? "stuck" : name_of(parts[0].end);
-  return choice;
+  const bool by_faces = target.kind == TargetKind::Faces;
+  if (scope == TargetScope::Mesh) return by_faces ? choose_faces_of_each(parts, target) : choose_each(parts, target);
+  return by_faces ? share_faces(parts, target, diagonal) : choose_each(parts, resolve(target, {0, diagonal}));
 }
 
 }  // namespace lodestone::tool

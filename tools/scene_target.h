@@ -38,11 +38,16 @@ struct SceneChoice {
   std::vector<Index> positions;  ///< one for each part
   bool met = true;
   std::string stopped_by;  ///< why the level is no coarser: faces, error, epsilon; or stuck
+  /// By part, where it is stopped by an error though faces are asked for: the deviation bound, in mesh units, of the
+  /// level that comes nearest to the target. Else empty.
+  std::vector<double> beyond;
 };
 
 /// Finds the positions that answer a target. Faces go where they are worth most: all parts get the coarsest level
 /// within one loss, the smallest for which the faces suffice, and what is left goes to whichever part has lost most.
-/// `diagonal` is the scene's.
+/// Where the faces do not suffice, as some parts cannot have so few, the others get their share of what those would have
+/// got, and no part goes on where its error leaps (see `position_before_leap`). A target that is a wish gives way, too,
+/// where meeting it makes a part's error leap. `diagonal` is the scene's.
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal);
 

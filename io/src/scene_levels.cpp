@@ -32,6 +32,7 @@ Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const S
   set_finite(numbers, "world_scale", mesh.scale);
   set_finite(numbers, "world_area", mesh.area / static_cast<double>(node_count));
   numbers["stop_reason"] = level.stop_reason;
+  if (level.deviation_beyond > 0) set_finite(numbers, "deviation_beyond", level.deviation_beyond);
   return numbers;
 }
 

@@ -225,7 +225,8 @@ class SceneWriter {
       for (std::size_t level = 0; level < range_.count; ++level) {
         const AssetLevel& given = level_of(mesh, level);
         measured_.back().push_back(
-            {std::move(written_[mesh][level].decoded), given.deviation, given.curvature_error, given.stop_reason});
+            {std::move(written_[mesh][level].decoded), given.deviation, given.curvature_error, given.stop_reason,
+             given.deviation_beyond});
       }
     }
     options_.measure(measured_);

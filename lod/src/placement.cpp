@@ -36,6 +36,7 @@ constexpr double kStay = 0.02;                // how much a vertex wants to stay
 constexpr double kCornerStay = 1e6;           // the same where lines end or meet
 constexpr double kAlong = 0.05;               // what distance along the surface or line counts, of distance from it
 constexpr double kLineWeight = 2;             // of lines against surfaces, at equal length
+constexpr double kRoam = 1.25;                // how far out of the original's box, of the rms distance around a vertex
 constexpr std::size_t kFewSamples = 100'000;  // small levels take a few more iterations in no time
 
 // Many faces of a level that keeps so large a share of them are the original's own. Sums of distances leave them where
@@ -111,6 +112,7 @@ class Fitting {
         skin_(has_layers(edges_) ? without_layers(original) : Mesh{}),
         guard_(has_layers(edges_) ? skin_ : original),
         fixed_(find_fixed(original, level, options.fixed)),
+        box_(bounding_box(original)),
         samples_(original, options.samples_per_face * level.face_count()),
         lines_(original) {
     classify();
@@ -121,6 +123,7 @@ class Fitting {
  private:
   void classify();
   void assign();
+  void fence();
   void choose_norm();
   double error() const;
   void turn_edges();
@@ -128,6 +131,7 @@ class Fitting {
   void add_lines(SparseSystem& system) const;
   void move();
   double forward_error() const;
+  void keep_in_box(std::vector<Vec3>& positions) const;
 
   const Mesh& original_;
   Mesh& level_;
@@ -137,6 +141,8 @@ class Fitting {
   Mesh skin_;  // the original as the guard sees it, where sheets lie on one another
   OriginalGuard guard_;
   std::vector<std::uint8_t> fixed_;  // by vertex
+  Box box_;                          // of the original
+  std::vector<double> roam_;         // by vertex: how far it may leave the box
   SampleNorm norm_;
   SurfaceSamples samples_;
   LineSamples lines_;
@@ -159,6 +165,28 @@ void Fitting::assign() {
     const Index hint = sample.face != kNoIndex ? sample.face : last;
     last = surface.nearest(sample.position, std::numeric_limits<double>::infinity(), hint).face;
     sample.place_on(level_, last);
+  }
+}
+
+/// Lets each vertex leave the original's box about as far as the surface around it is off: on a curved surface it stands
+/// out by what its faces lie within, while a face that stands for far more than itself would reach for all of that.
+void Fitting::fence() {
+  std::vector<double> weight(level_.vertex_count(), 0);
+  roam_.assign(level_.vertex_count(), 0);
+  for (const SurfaceSample& sample : samples_.all())
+    for (Index k = 0; k < 3; ++k) {
+      const Index v = level_.corner_vertex(3 * sample.face + k);
+      weight[v] += sample.weight;
+      roam_[v] += sample.weight * sample.squared_distance;
+    }
+  for (Index v = 0; v < roam_.size(); ++v) roam_[v] = weight[v] > 0 ? kRoam * std::sqrt(roam_[v] / weight[v]) : 0;
+}
+
+void Fitting::keep_in_box(std::vector<Vec3>& positions) const {
+  for (Index v = 0; v < positions.size(); ++v) {
+    const Vec3 roam(roam_[v], roam_[v], roam_[v]), low = box_.low - roam, high = box_.high + roam;
+    Vec3& p = positions[v];
+    p = {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y), std::clamp(p.z, low.z, high.z)};
   }
 }
 
@@ -236,6 +264,7 @@ void Fitting::move() {
   std::vector<Vec3> moved;
   for (const Vec3f& p : level_.positions) moved.emplace_back(p);
   system.solve(moved, kSolverSteps);
+  keep_in_box(moved);
   std::vector<Vec3f> positions;
   for (const Vec3& p : moved)
     positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
@@ -270,6 +299,7 @@ double Fitting::forward_error() const {
 void Fitting::run() {
   assign();
   choose_norm();
+  fence();
   const OriginalGuard::Survey survey = guard_.survey(level_, norm_);
   double reach = survey.farthest;
   for (const SurfaceSample& sample : samples_.all()) reach = std::max(reach, std::sqrt(sample.squared_distance));

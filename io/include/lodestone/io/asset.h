@@ -22,6 +22,7 @@ struct AssetLevel {
   Deviation deviation;         ///< measured against the full mesh; goes to extras, as the next
   double curvature_error = 0;  ///< of the metric's own unit
   std::string stop_reason;     ///< e.g. "faces", "error", "stuck"
+  double deviation_beyond = 0; ///< a bound on it had the level gone on to the faces asked for; 0: it did, or knows none
 };
 
 /// A grid that positions are quantised in, whatever the meshes: files made one by one agree where their meshes meet.

@@ -20,7 +20,8 @@ struct PlacementOptions {
 ///
 /// Fits by least squares to points of the original, its borders and other constrained lines (seams, material borders)
 /// to points of its lines; fine levels, which share faces with the original, by least sums of distances. Faces neither
-/// turn over nor degenerate; vertices, wedges and materials stay, and so do the wedges of lines. Attributes are looked
+/// turn over nor degenerate, and none reaches out of the original's box by more than
+/// the surface around it was off; vertices, wedges and materials stay, and so do the wedges of lines. Attributes are looked
 /// up where a vertex has gone to, on its own side of every seam: they are blended from the original's there, but joints
 /// and weights, which stay those of the vertex.
 ///

@@ -1,0 +1,33 @@
+#include "error_leap.h"
+
+#include <algorithm>
+
+namespace lodestone::tool {
+namespace {
+
+constexpr double kLeap = 8;               // of smooth surfaces the error doubles with half of the faces, of lines four times
+constexpr double kBurden = 4;             // that is a quarter of the faces and less
+constexpr double kOrdinaryError = 0.02;   // of the mesh's diagonal
+constexpr double kNoticeable = 0.01;      // of the scene's
+
+}  // namespace
+
+Index position_before_leap(const ProgressiveMesh& mesh, std::span<const Index> face_counts,
+                           std::span<const double> errors, const LeapScale& scale) {
+  auto position = static_cast<Index>(errors.size() - 1);
+  std::size_t finer = position;  // the finest with at most twice the faces
+  for (; position > 0; --position) {
+    const double next = errors[position - 1];
+    while (face_counts[finer] > 2 * face_counts[position - 1]) --finer;
+    const bool leaps = next > kLeap * std::max(errors[finer], kOrdinaryError * scale.mesh);
+    if (leaps && next > kNoticeable * scale.scene) break;
+  }
+  while (!is_whole(mesh, position)) ++position;
+  return position;
+}
+
+bool is_burdened(double error, double error_alone, const LeapScale& scale) {
+  return error > kBurden * error_alone && error > kNoticeable * scale.scene;
+}
+
+}  // namespace lodestone::tool
