@@ -153,7 +153,8 @@ Result<Joints> read_skins(const GltfDocument& document, std::span<const MeshInst
     if (places.empty()) {
       LODESTONE_TRY(places, place_nodes(document));
     }
-    LODESTONE_TRY(joints[instance.skin], read_joints(document, places, instance.skin));
+    LODESTONE_TRY(const Skin skin, read_skin(document, instance.skin));
+    joints[instance.skin] = skin.pose(places);
   }
   return joints;
 }

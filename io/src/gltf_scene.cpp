@@ -104,13 +104,13 @@ Result<void> mark_shown(const GltfDocument& document, const NodeGraph& graph, st
   return {};
 }
 
-Result<Transform> local_transform(const Json& node, std::string_view where) {
+Result<LocalPlace> local_place(const Json& node, std::string_view where) {
   LODESTONE_TRY(const auto matrix, number_array_member(node, "matrix", 16, where));
   if (!matrix.empty()) {
     Transform t;
     for (std::size_t row = 0; row < 3; ++row)
       for (std::size_t column = 0; column < 4; ++column) t.rows[row][column] = matrix[4 * column + row];
-    return t;
+    return LocalPlace{t, {}};
   }
   LODESTONE_TRY(auto translation, number_array_member(node, "translation", 3, where));
   LODESTONE_TRY(auto rotation, number_array_member(node, "rotation", 4, where));
@@ -118,8 +118,10 @@ Result<Transform> local_transform(const Json& node, std::string_view where) {
   if (translation.empty()) translation = {0, 0, 0};
   if (rotation.empty()) rotation = {0, 0, 0, 1};
   if (scale.empty()) scale = {1, 1, 1};
-  return from_trs({translation[0], translation[1], translation[2]},
-                  {rotation[0], rotation[1], rotation[2], rotation[3]}, {scale[0], scale[1], scale[2]});
+  return LocalPlace{std::nullopt,
+                    {translation[0], translation[1], translation[2]},
+                    {rotation[0], rotation[1], rotation[2], rotation[3]},
+                    {scale[0], scale[1], scale[2]}};
 }
 
 /// Walks the scene once; a stack and not recursion, since depth comes from the file.
@@ -157,8 +159,8 @@ class Walk {
     if (visited_[index]) return fail(ErrorCode::Malformed, where + ": stands in the scene twice");
     visited_[index] = true;
     LODESTONE_TRY(const Json* const node, document_.element("nodes", "node", index));
-    LODESTONE_TRY(const Transform local, local_transform(*node, where));
-    const Transform world = parent * local;
+    LODESTONE_TRY(const LocalPlace local, local_place(*node, where));
+    const Transform world = parent * local.transform();
     if (find_member(*node, "mesh") != nullptr) {
       LODESTONE_TRY(const std::size_t mesh, size_member(*node, "mesh", where));
       std::size_t skin = kNoSkin;
@@ -201,21 +203,36 @@ Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document
   return Walk(document, graph, level).run(roots);
 }
 
-Result<std::vector<NodePlace>> place_nodes(const GltfDocument& document) {
+Result<NodeTree> NodeTree::read(const GltfDocument& document) {
   LODESTONE_TRY(const NodeGraph graph, read_graph(document));
-  std::vector<NodePlace> places(graph.parent.size());
-  LODESTONE_CHECK(mark_shown(document, graph, places));
-  std::vector<std::size_t> stack = roots_of(graph);
-  while (!stack.empty()) {
-    const std::size_t index = stack.back();
-    stack.pop_back();
-    LODESTONE_TRY(const Json* const node, document.element("nodes", "node", index));
-    LODESTONE_TRY(const Transform local, local_transform(*node, text("node ", index)));
-    const std::size_t parent = graph.parent[index];
-    places[index].world = parent == kNoNode ? local : places[parent].world * local;
-    stack.insert(stack.end(), graph.children[index].begin(), graph.children[index].end());
+  NodeTree tree;
+  tree.parent_ = graph.parent;
+  tree.shown_.resize(graph.parent.size());
+  LODESTONE_CHECK(mark_shown(document, graph, tree.shown_));
+  for (std::size_t i = 0; i < graph.parent.size(); ++i) {
+    LODESTONE_TRY(const Json* const node, document.element("nodes", "node", i));
+    LODESTONE_TRY(tree.at_rest_.emplace_back(), local_place(*node, text("node ", i)));
+  }
+  tree.order_ = roots_of(graph);
+  for (std::size_t i = 0; i < tree.order_.size(); ++i) {
+    const auto& children = graph.children[tree.order_[i]];
+    tree.order_.insert(tree.order_.end(), children.begin(), children.end());
+  }
+  return tree;
+}
+
+std::vector<NodePlace> NodeTree::place(std::span<const LocalPlace> nodes) const {
+  std::vector<NodePlace> places = shown_;
+  for (const std::size_t node : order_) {
+    const Transform local = nodes[node].transform();
+    places[node].world = parent_[node] == kNoNode ? local : places[parent_[node]].world * local;
   }
   return places;
+}
+
+Result<std::vector<NodePlace>> place_nodes(const GltfDocument& document) {
+  LODESTONE_TRY(const NodeTree tree, NodeTree::read(document));
+  return tree.place(tree.at_rest());
 }
 
 Result<std::vector<std::vector<std::size_t>>> lod_chains(const GltfDocument& document) {

@@ -37,19 +37,23 @@ void add_scaled(Transform& sum, const Transform& other, double factor) {
 
 }  // namespace
 
-Result<std::vector<Transform>> read_joints(const GltfDocument& document, std::span<const NodePlace> places,
-                                           std::size_t index) {
-  const std::string where = text("skin ", index);
-  LODESTONE_TRY(const Json* const skin, document.element("skins", "skin", index));
-  LODESTONE_TRY(const auto joints, size_array_member(*skin, "joints", where));
-  LODESTONE_TRY(std::vector<Transform> matrices, read_inverse_binds(document, *skin, joints.size(), where));
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (joints[i] >= places.size())
-      return fail(ErrorCode::Malformed,
-                  text(where, ": node ", joints[i], " does not exist: the file has ", places.size()));
-    matrices[i] = places[joints[i]].world * matrices[i];
-  }
+std::vector<Transform> Skin::pose(std::span<const NodePlace> places) const {
+  std::vector<Transform> matrices(joints.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) matrices[i] = places[joints[i]].world * inverse_binds[i];
   return matrices;
+}
+
+Result<Skin> read_skin(const GltfDocument& document, std::size_t index) {
+  const std::string where = text("skin ", index);
+  const std::size_t node_count = document.count("nodes");
+  LODESTONE_TRY(const Json* const json, document.element("skins", "skin", index));
+  Skin skin;
+  LODESTONE_TRY(skin.joints, size_array_member(*json, "joints", where));
+  LODESTONE_TRY(skin.inverse_binds, read_inverse_binds(document, *json, skin.joints.size(), where));
+  for (const std::size_t joint : skin.joints)
+    if (joint >= node_count)
+      return fail(ErrorCode::Malformed, text(where, ": node ", joint, " does not exist: the file has ", node_count));
+  return skin;
 }
 
 Skinner::Skinner(std::span<const Attribute> attributes) {

@@ -13,10 +13,17 @@
 
 namespace lodestone::detail {
 
-/// Returns, for each joint of a skin, the map from the mesh's units to the world in the pose the nodes have: it undoes
-/// quantisation, too, which writers put into the inverse bind matrices. Errors: Malformed.
-Result<std::vector<Transform>> read_joints(const GltfDocument& document, std::span<const NodePlace> places,
-                                           std::size_t skin);
+/// The joints that move a mesh, read once, to pose them any number of times.
+struct Skin {
+  std::vector<std::size_t> joints;       ///< their nodes
+  std::vector<Transform> inverse_binds;  ///< one for each; they undo quantisation, too, which writers put into them
+
+  /// Returns, for each joint, the map from the mesh's units to the world where the nodes stand at `places`.
+  std::vector<Transform> pose(std::span<const NodePlace> places) const;
+};
+
+/// Errors: Malformed, also where a joint's node does not exist.
+Result<Skin> read_skin(const GltfDocument& document, std::size_t index);
 
 /// Poses points by the joints and weights of all sets that there are.
 class Skinner {

@@ -8,6 +8,7 @@
 #include "bytes.h"
 #include "gltf_scene.h"
 #include "gltf_skin.h"
+#include "largest_pose.h"
 #include "text.h"
 #include "transform.h"
 #include "try.h"
@@ -69,7 +70,7 @@ double area_of(const Mesh& mesh, std::span<const Vec3> points) {
 /// Measures the instances of one mesh after the other.
 class InstanceMeasure {
  public:
-  InstanceMeasure(Scene::Impl& scene, std::span<const NodePlace> places) : scene_(scene), places_(places) {}
+  InstanceMeasure(Scene::Impl& scene, const LargestPoses& poses) : scene_(scene), poses_(poses) {}
 
   Result<void> add_mesh(std::size_t number) {
     SceneMesh& mesh = scene_.meshes[number];
@@ -95,25 +96,22 @@ class InstanceMeasure {
     const std::string where = text("node ", index);
     LODESTONE_TRY(const Json* const node, scene_.document.element("nodes", "node", index));
     mesh.nodes.push_back(string_member(*node, "name"));
-    if (find_member(*node, "skin") != nullptr) {
-      LODESTONE_TRY(const std::size_t skin, size_member(*node, "skin", where));
-      LODESTONE_TRY(const auto joints, read_joints(scene_.document, places_, skin));
-      return add_skinned(mesh, skinner, joints);
-    }
+    const ShownPlace& place = poses_.nodes.at(index);
+    if (place.skin != kNoSkin) return add_skinned(mesh, skinner, poses_.skins.at(place.skin));
     LODESTONE_TRY(const auto copies, read_copies(scene_.document, *node, where));
     for (const Transform& copy : copies) {
-      const Transform world = places_[index].world * copy;
+      const Transform world = place.world * copy;
       here_.scale = std::max(here_.scale, world.stretch());
       LODESTONE_CHECK(add_points(mesh, [&](std::size_t, const Vec3& p) { return world.exact_point(p); }));
     }
     return {};
   }
 
-  Result<void> add_skinned(SceneMesh& mesh, const Skinner& skinner, std::span<const Transform> joints) {
+  Result<void> add_skinned(SceneMesh& mesh, const Skinner& skinner, const PosedSkin& skin) {
     mesh.skinned = true;
-    for (const Transform& joint : joints) here_.scale = std::max(here_.scale, joint.stretch());
+    here_.scale = std::max(here_.scale, skin.stretch);
     return add_points(mesh, [&](std::size_t wedge, const Vec3& p) {
-      return skinner.empty() ? p : skinner.pose(wedge, joints).exact_point(p);
+      return skinner.empty() ? p : skinner.pose(wedge, skin.joints).exact_point(p);
     });
   }
 
@@ -136,7 +134,7 @@ class InstanceMeasure {
   }
 
   Scene::Impl& scene_;
-  std::span<const NodePlace> places_;
+  const LargestPoses& poses_;
   std::vector<Vec3> points_;
   std::size_t placed_ = 0;
   NodePresence here_;  // of the node at hand
@@ -146,8 +144,10 @@ class InstanceMeasure {
 }  // namespace
 
 Result<void> measure_instances(Scene::Impl& scene) {
-  LODESTONE_TRY(const std::vector<NodePlace> places, place_nodes(scene.document));
-  InstanceMeasure measure(scene, places);
+  std::vector<std::size_t> nodes;
+  for (const MeshSource& source : scene.sources) nodes.insert(nodes.end(), source.nodes.begin(), source.nodes.end());
+  LODESTONE_TRY(const LargestPoses poses, find_largest_poses(scene.document, nodes));
+  InstanceMeasure measure(scene, poses);
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) LODESTONE_CHECK(measure.add_mesh(i));
   scene.box = measure.box();
   return {};

@@ -6,7 +6,8 @@
 
 namespace lodestone::detail {
 
-/// Fills in what depends on where the meshes' nodes stand: scale, area, number of instances, the scene's box.
+/// Fills in what depends on where the meshes' nodes stand, each when animations have it largest: scale, area, number of
+/// instances, the scene's box.
 /// Pre: meshes, sources and their nodes are there. Errors: Malformed; LimitExceeded for scenes of too many corners.
 Result<void> measure_instances(Scene::Impl& scene);
 

@@ -23,8 +23,8 @@ struct SceneMesh {
   std::string name;                    ///< may be empty
   Mesh mesh;                           ///< face_material: the number of the primitive in the document's mesh
   AssemblyReport assembly;             ///< what became of the triangles in the file
-  double scale = 1;                    ///< the largest stretch of any instance: world units per mesh unit
-  double area = 0;                     ///< of all its instances together, squared world units
+  double scale = 1;                    ///< the largest stretch of any instance, ever: world units per mesh unit
+  double area = 0;                     ///< of all its instances together when largest, squared world units
   std::size_t instance_count = 0;      ///< how often the scene shows it
   bool skinned = false;                ///< by any of its nodes
   bool has_targets = false;            ///< morph targets
@@ -58,7 +58,8 @@ class Scene {
   const std::vector<AssemblyReport>& dropped() const;
   /// What is left out of the scene or changed in it, one sentence each.
   const std::vector<std::string>& notes() const;
-  /// The box of all instances in the world, skinned ones posed at rest; of size 0 where there are none.
+  /// The box of all instances in the world, each at rest or, where animations make it larger, when it is largest; of
+  /// size 0 where there are none.
   const Box& box() const;
   /// Whether world units are metres: glTF says so, other formats say nothing.
   bool in_metres() const;
