@@ -10,16 +10,20 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "coincident_faces.h"
 #include "supremum.h"
 #include "triangle.h"
 
 namespace lodestone {
 namespace {
 
+using detail::CoincidentFaces;
 using detail::Goal;
 using detail::PatchBound;
 using detail::SupremumSearch;
@@ -148,7 +152,8 @@ class Samples {
 /// The distances and normal angles at samples of one kind.
 class Tally {
  public:
-  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index) : from_(from), to_(to), to_index_(to_index) {}
+  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, CoincidentFaces& to_faces)
+      : from_(from), to_(to), to_index_(to_index), to_faces_(to_faces) {}
 
   void operator()(const Vec3& point, Index face) {
     const SurfaceIndex::Hit hit = to_index_.nearest(point, detail::kUnbounded, hint_);
@@ -156,7 +161,7 @@ class Tally {
     ++count_;
     sum_ += hit.distance;
     squares_ += hit.distance * hit.distance;
-    angles_ += angle_between(area_vector(from_, face), area_vector(to_, hit.face));
+    angles_ += least_angle(area_vector(from_, face), to_faces_.as_near_as(hit));
   }
 
   std::size_t count() const { return count_; }
@@ -165,11 +170,17 @@ class Tally {
   double mean_angle() const { return over_count(angles_); }
 
  private:
+  double least_angle(const Vec3& normal, std::span<const Index> faces) const {
+    double least = std::numbers::pi;
+    for (const Index face : faces) least = std::min(least, angle_between(normal, area_vector(to_, face)));
+    return least;
+  }
   double over_count(double x) const { return x / static_cast<double>(std::max<std::size_t>(count_, 1)); }
 
   const Mesh& from_;
   const Mesh& to_;
   const SurfaceIndex& to_index_;
+  CoincidentFaces& to_faces_;
   Index hint_ = kNoIndex;
   std::size_t count_ = 0;
   double sum_ = 0, squares_ = 0, angles_ = 0;
@@ -186,7 +197,8 @@ double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_in
   const auto taken = [&](double weight) {
     return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
   };
-  Tally vertices(from, to, to_index), edges(from, to, to_index), faces(from, to, to_index);
+  CoincidentFaces to_faces(to, to_index);
+  Tally vertices(from, to, to_index, to_faces), edges(from, to, to_index, to_faces), faces(from, to, to_index, to_faces);
   samples.for_vertices(std::min(samples.vertex_count(), taken(weights.vertices)), std::ref(vertices));
   samples.for_edges(taken(weights.edges), std::ref(edges));
   // The angle needs a fair number in faces, even where few or none of Metro's are.

@@ -188,11 +188,12 @@ struct SurfaceIndex::Impl {
 
 namespace {
 
-/// One search on its way: the nearest point so far, and how far it still has to look.
+/// One search on its way: the nearest point so far, and how far it still has to look. With a list it looks for all faces
+/// within the limit.
 class Search {
  public:
-  Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit)
-      : tree_(tree), p_(p), best_squared_(limit * limit) {
+  Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit, std::vector<Index>* all = nullptr)
+      : tree_(tree), p_(p), best_squared_(limit * limit), all_(all) {
     hit_.distance = std::numeric_limits<double>::infinity();
     update_reach();
   }
@@ -202,6 +203,10 @@ class Search {
     const Vec3 q = detail::nearest_on_triangle(p_, tree_.triangles[place]);
     const double squared = squared_length(p_ - q);
     const Index face = tree_.faces[place];
+    if (all_ != nullptr) {
+      if (squared <= best_squared_) all_->push_back(face);
+      return;
+    }
     if (squared > best_squared_ || (squared == best_squared_ && face >= hit_.face)) return;
     best_squared_ = squared;
     hit_.point = q;
@@ -261,6 +266,7 @@ class Search {
   const SurfaceIndex::Impl& tree_;
   Vec3 p_;
   double best_squared_;
+  std::vector<Index>* all_;
   double reach_ = 0;
   SurfaceIndex::Hit hit_;
   std::size_t size_ = 0;
@@ -377,6 +383,13 @@ SurfaceIndex::Hit SurfaceIndex::nearest(const Vec3& p, double limit, Index hint)
   if (hint != kNoIndex) search.test(impl_->places[hint]);
   search.descend();
   return search.result();
+}
+
+void SurfaceIndex::within(const Vec3& p, double distance, std::vector<Index>& faces) const {
+  faces.clear();
+  if (empty()) return;
+  Search(*impl_, p, distance, &faces).descend();
+  std::sort(faces.begin(), faces.end());
 }
 
 double SurfaceIndex::distance_to_face(const Vec3& p, Index face) const {

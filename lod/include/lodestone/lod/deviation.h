@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include <lodestone/core/mesh.h>
 
@@ -52,6 +53,9 @@ class SurfaceIndex {
   };
   /// Returns the surface's nearest point to `p` among those no farther than `limit`; `hint` is a face likely near it.
   Hit nearest(const Vec3& p, double limit, Index hint = kNoIndex) const;
+
+  /// Sets `faces` to all that are no farther than `distance` from `p`, in ascending order.
+  void within(const Vec3& p, double distance, std::vector<Index>& faces) const;
 
   /// Returns the distance from `p` to one face; pre: `face` is one of the mesh's.
   double distance_to_face(const Vec3& p, Index face) const;
