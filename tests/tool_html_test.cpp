@@ -232,8 +232,9 @@ TEST_CASE("pages and heatmaps have to have a place of their own") {
     CHECK(run_program(arguments).exit_code == 1);
   }
   CHECK(run_program({"compare", pair.a, pair.b, "--html", pair.file("no/page.html")}).exit_code == 4);
-  CHECK(run_program({"build", pair.a, "-o", glb, "--html", pair.folder.path().string()}).exit_code == 4);
   CHECK(names_in(pair.folder.path()) == Names{"a.obj", "b.obj"});
+  CHECK(run_program({"build", pair.a, "-o", glb, "--html", pair.folder.path().string()}).exit_code == 0);
+  CHECK(names_in(pair.folder.path()) == Names{"a.html", "a.obj", "b.obj", "out.glb"});
 }
 
 TEST_CASE("a page of equal surfaces has no errors to show") {
