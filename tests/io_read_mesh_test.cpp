@@ -437,6 +437,8 @@ TEST_CASE("other formats go through assimp, unknown ones are named") {
 
 TEST_CASE("assimp: what a file asks for is bounded, what its importers do cannot end this process") {
   const Error error = failure("p 4000000000\n0 0 0\n", "nff");  // reads one corner again and again
+  CHECK_THAT(error.message, contains("nff: "));
+  if (kReduced) return;  // A sanitizer's allocator ends the child before the limit does.
   CHECK(error.code == ErrorCode::LimitExceeded);
   CHECK_THAT(error.message, contains("nff: it takes more than 10 s or 1024 MiB"));
 }
