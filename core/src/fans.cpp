@@ -10,11 +10,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include <lodestone/core/union_find.h>
 
 #include "hash_index.h"
 
@@ -26,23 +27,6 @@ constexpr std::size_t kMostFacesAtEdge = 32;
 
 // Faces lie on one another at an edge where the cosine of the angle between them is larger.
 constexpr double kLayered = 0.99;
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-  Index find(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 /// A face's edge, named by the corner that it leaves.
 struct HalfEdge {

@@ -2,29 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include <lodestone/core/union_find.h>
 
 namespace lodestone::detail {
-namespace {
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-  Index find(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
-
-}  // namespace
 
 Pieces::Pieces(const Mesh& mesh, const Connectivity& connectivity) : piece_(mesh.vertex_count(), kNoIndex) {
   UnionFind joined(mesh.vertex_count());
