@@ -7,8 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
@@ -17,11 +15,13 @@
 #include <lodestone/io/read_mesh.h>
 
 #include "support/cad_shapes.h"
+#include "support/soup_building.h"
 
 namespace lodestone::bench {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+using test::kTurn;
+
 constexpr int kCadDetail = 4;  // about 1,000 faces each
 
 struct FileOfModel {
@@ -114,36 +114,12 @@ TriangleSoup parametric(int columns, int rows, bool closed, const SurfacePoint& 
 
 /// A cube's six sides as grids of n × n squares, blown up to the unit sphere.
 TriangleSoup sphere(int n) {
-  TriangleSoup soup;
-  std::map<std::array<int, 3>, Index> numbers;
-  const auto point = [&](const std::array<int, 3>& at) {
-    const auto [entry, is_new] = numbers.try_emplace(at, static_cast<Index>(soup.positions.size()));
-    if (is_new) {
-      std::array<double, 3> p{};
-      for (int k = 0; k < 3; ++k) {
-        p[k] = std::tan((2.0 * at[k] / n - 1) * kTurn / 8) + jitter(entry->second, k) * 0.6 / n;
-      }
-      const Vec3 s = normalized({p[0], p[1], p[2]});
-      soup.positions.push_back({static_cast<float>(s.x), static_cast<float>(s.y), static_cast<float>(s.z)});
-    }
-    return entry->second;
-  };
-  for (int side = 0; side < 6; ++side) {
-    const auto corner = [&](int i, int j) {
-      std::array<int, 3> at{};
-      at[side / 2] = side % 2 == 0 ? n : 0;
-      at[(side / 2 + 1) % 3] = side % 2 == 0 ? i : j;
-      at[(side / 2 + 2) % 3] = side % 2 == 0 ? j : i;
-      return point(at);
-    };
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        const Index a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
-        soup.indices.insert(soup.indices.end(), {a, b, c, a, c, d});
-      }
-    }
-  }
-  return soup;
+  return test::box_of_squares(n, [&](const std::array<int, 3>& at, Index number) {
+    std::array<double, 3> p{};
+    for (int k = 0; k < 3; ++k) p[k] = std::tan((2.0 * at[k] / n - 1) * kTurn / 8) + jitter(number, k) * 0.6 / n;
+    const Vec3 s = normalized({p[0], p[1], p[2]});
+    return std::array{s.x, s.y, s.z};
+  });
 }
 
 Vec3 torus_point(double u, double v) {

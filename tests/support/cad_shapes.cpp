@@ -4,14 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <numbers>
 #include <utility>
+
+#include "support/soup_building.h"
 
 namespace lodestone::test {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 struct Point2 {
   double x = 0;
@@ -24,19 +22,6 @@ struct Outline {
   Loop outer;
   std::vector<Loop> holes;
 };
-
-Index add_point(TriangleSoup& soup, double x, double y, double z) {
-  soup.positions.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
-  return static_cast<Index>(soup.positions.size() - 1);
-}
-
-void add_triangle(TriangleSoup& soup, Index a, Index b, Index c) { soup.indices.insert(soup.indices.end(), {a, b, c}); }
-
-/// Adds the square a b c d, counter-clockwise, cut from a to c.
-void add_square(TriangleSoup& soup, Index a, Index b, Index c, Index d) {
-  add_triangle(soup, a, b, c);
-  add_triangle(soup, a, c, d);
-}
 
 /// n points on an arc from one angle towards another, both in turns; the last is left out.
 void add_arc(Loop& loop, Point2 center, double radius, double from, double to, int n) {
@@ -207,34 +192,6 @@ TriangleSoup revolved(const Loop& profile, int sides) {
   return soup;
 }
 
-/// The six sides of a box as n × n squares over points that `point` makes of whole coordinates from 0 to n.
-template <class MakePoint>
-TriangleSoup box_of_squares(int n, MakePoint make_point) {
-  TriangleSoup soup;
-  std::map<std::array<int, 3>, Index> numbers;
-  const auto point = [&](const std::array<int, 3>& at) {
-    const auto [entry, is_new] = numbers.try_emplace(at, static_cast<Index>(soup.positions.size()));
-    if (is_new) {
-      const std::array<double, 3> p = make_point(at);
-      add_point(soup, p[0], p[1], p[2]);
-    }
-    return entry->second;
-  };
-  for (std::size_t side = 0; side < 6; ++side) {
-    const auto corner = [&](int i, int j) {
-      std::array<int, 3> at{};
-      at[side / 2] = side % 2 == 0 ? n : 0;
-      at[(side / 2 + 1) % 3] = side % 2 == 0 ? i : j;
-      at[(side / 2 + 2) % 3] = side % 2 == 0 ? j : i;
-      return point(at);
-    };
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i)
-        add_square(soup, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
-  }
-  return soup;
-}
-
 /// A cross-section of a pipe: its middle, and the direction in the xy plane that the pipe goes in.
 struct Section {
   Point2 middle;
@@ -300,7 +257,7 @@ TriangleSoup rounded_plate(int arc, int n) {
 }
 
 TriangleSoup crowded_box(int n) {
-  return box_of_squares(n, [&](const std::array<int, 3>& at) {
+  return box_of_squares(n, [&](const std::array<int, 3>& at, Index) {
     const auto crowd = [&](int i) { return std::pow(static_cast<double>(i) / n, 4.0); };
     return std::array<double, 3>{3 * crowd(at[0]), 2 * crowd(at[1]), crowd(at[2])};
   });
@@ -319,7 +276,7 @@ TriangleSoup drilled_plate(int columns, int rows, int sides) {
 }
 
 TriangleSoup rounded_box(int n) {
-  return box_of_squares(2 * n + 1, [&](const std::array<int, 3>& at) {
+  return box_of_squares(2 * n + 1, [&](const std::array<int, 3>& at, Index) {
     constexpr double kRadius = 0.2;
     const std::array<double, 3> half = {1.5, 1, 0.5};
     std::array<double, 3> offset{};

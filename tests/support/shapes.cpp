@@ -6,29 +6,14 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include "support/random.h"
+#include "support/soup_building.h"
 
 namespace lodestone::test {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
-
-Index add_point(TriangleSoup& soup, double x, double y, double z) {
-  soup.positions.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
-  return static_cast<Index>(soup.positions.size() - 1);
-}
-
-void add_triangle(TriangleSoup& soup, Index a, Index b, Index c) { soup.indices.insert(soup.indices.end(), {a, b, c}); }
-
-/// Adds the square a b c d, counter-clockwise, cut from a to c.
-void add_square(TriangleSoup& soup, Index a, Index b, Index c, Index d) {
-  add_triangle(soup, a, b, c);
-  add_triangle(soup, a, c, d);
-}
 
 /// Adds columns × rows squares over points that the caller numbers: `point(i, j)`, i along columns, j along rows.
 template <class Point>

@@ -9,7 +9,7 @@ import { basename, dirname, extname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { promisify } from 'node:util';
 import { makeTube } from './made.mjs';
-import { Log, readOptions, repository } from './suite.mjs';
+import { Log, readOptions, repository, skip } from './suite.mjs';
 
 const demoModel = join(repository, 'demo', 'suzi.glb');
 const large = ['paper/stanford-bunny.obj', 'paper/fandisk.obj'];
@@ -40,6 +40,16 @@ export function planAssets({ models, output }) {
     ...found(large).flatMap((input) => variants(input, 'mesh', output, [[]])),
     ...[madeModel(output), ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], [noDraco]])),
   ];
+}
+
+/** Yields the assets of these names that are there, of those named on the command line instead where any are. */
+export function* chosenAssets(options, subjects) {
+  const assets = planAssets(options);
+  for (const name of options.files.length > 0 ? options.files : subjects) {
+    const asset = assets.find((one) => one.name === name);
+    if (asset && existsSync(asset.path)) yield { asset, assets };
+    else skip(name);
+  }
 }
 
 async function build(program, { input, path, flags }) {

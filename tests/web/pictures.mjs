@@ -3,13 +3,13 @@
 //
 //   node pictures.mjs [--models FOLDER] --output FOLDER [NAME …]     of the assets that assets.mjs has built there
 import assert from 'node:assert/strict';
-import { existsSync, readdirSync } from 'node:fs';
+import { readdirSync } from 'node:fs';
 import { readFile, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
-import { planAssets } from './assets.mjs';
+import { chosenAssets } from './assets.mjs';
 import { openCracks, scrambleTextures } from './damage.mjs';
 import { lodChains, parseGlb } from './glb.mjs';
-import { Log, openSite, readOptions, skip } from './suite.mjs';
+import { Log, openSite, readOptions } from './suite.mjs';
 
 const subjects = ['suzi', 'tube', 'spot_triangulated', 'FlightHelmet', 'SheenCloth', 'Lantern_nobasecolor', 'cakeBirthday',
   'RobotExpressive', 'Knight'];
@@ -106,14 +106,8 @@ async function main() {
   const page = await openPage(site.browser, `${site.address}/pages/three.html?pictures.js`);
   const studio = { page, url: site.url, output: options.output };
   const log = new Log();
-  const assets = planAssets(options);
-  for (const name of options.files.length > 0 ? options.files : subjects) {
-    const asset = assets.find((one) => one.name === name);
-    if (!asset || !existsSync(asset.path)) {
-      skip(name);
-      continue;
-    }
-    await checkAsset(log, studio, asset, assets.find(({ stem, draco }) => stem === name && !draco));
+  for (const { asset, assets } of chosenAssets(options, subjects)) {
+    await checkAsset(log, studio, asset, assets.find(({ stem, draco }) => stem === asset.name && !draco));
   }
   await site.close();
   log.close();

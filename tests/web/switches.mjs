@@ -3,11 +3,10 @@
 //
 //   node switches.mjs [--models FOLDER] --output FOLDER [NAME …]     of the assets that assets.mjs has built there
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
-import { planAssets } from './assets.mjs';
+import { chosenAssets } from './assets.mjs';
 import { lodChains, parseGlb, trianglesOfScene } from './glb.mjs';
-import { Log, openSite, readOptions, skip } from './suite.mjs';
+import { Log, openSite, readOptions } from './suite.mjs';
 
 const subjects = ['FlightHelmet', 'Knight', 'RobotExpressive', 'PalmTree', 'cakeBirthday'];
 const distances = [1, 4, 16, 64]; // in sizes of the model
@@ -41,15 +40,9 @@ async function main() {
   const { openPage } = await import('./browser.mjs');
   const page = await openPage(site.browser, `${site.address}/pages/three.html?switches.js`);
   const log = new Log();
-  const assets = planAssets(options);
-  for (const name of options.files.length > 0 ? options.files : subjects) {
-    const asset = assets.find((one) => one.name === name);
-    if (!asset || !existsSync(asset.path)) {
-      skip(name);
-      continue;
-    }
+  for (const { asset } of chosenAssets(options, subjects)) {
     const gltf = parseGlb(await readFile(asset.path));
-    await log.run(name, {
+    await log.run(asset.name, {
       'coverages': () => coveragesFall(gltf),
       'triangles from afar': () => drawsLessFarAway({ page, url: site.url }, asset, gltf),
     });
