@@ -149,10 +149,10 @@ class Samples {
   double area_ = 0;
 };
 
-/// The distances and normal angles at samples of one kind.
+/// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
 class Tally {
  public:
-  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, CoincidentFaces& to_faces)
+  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, CoincidentFaces* to_faces = nullptr)
       : from_(from), to_(to), to_index_(to_index), to_faces_(to_faces) {}
 
   void operator()(const Vec3& point, Index face) {
@@ -161,7 +161,7 @@ class Tally {
     ++count_;
     sum_ += hit.distance;
     squares_ += hit.distance * hit.distance;
-    angles_ += least_angle(area_vector(from_, face), to_faces_.as_near_as(hit));
+    if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_, face), to_faces_->as_near_as(hit));
   }
 
   std::size_t count() const { return count_; }
@@ -180,7 +180,7 @@ class Tally {
   const Mesh& from_;
   const Mesh& to_;
   const SurfaceIndex& to_index_;
-  CoincidentFaces& to_faces_;
+  CoincidentFaces* to_faces_;
   Index hint_ = kNoIndex;
   std::size_t count_ = 0;
   double sum_ = 0, squares_ = 0, angles_ = 0;
@@ -198,7 +198,7 @@ double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_in
     return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
   };
   CoincidentFaces to_faces(to, to_index);
-  Tally vertices(from, to, to_index, to_faces), edges(from, to, to_index, to_faces), faces(from, to, to_index, to_faces);
+  Tally vertices(from, to, to_index), edges(from, to, to_index), faces(from, to, to_index, &to_faces);
   samples.for_vertices(std::min(samples.vertex_count(), taken(weights.vertices)), std::ref(vertices));
   samples.for_edges(taken(weights.edges), std::ref(edges));
   // The angle needs a fair number in faces, even where few or none of Metro's are.
