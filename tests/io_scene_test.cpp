@@ -908,6 +908,21 @@ TEST_CASE("broken scenes are errors that name what is broken") {
   }
 }
 
+TEST_CASE("a file that lacks any of its lists is read, or refused with words") {
+  GltfMaker maker = strips(2, 4);
+  const GltfFile whole = encoded(read(maker), plain());
+  for (const auto& [list, value] : whole.json.items()) {
+    CAPTURE(list);
+    GltfMaker broken;
+    broken.binary = whole.buffers[0];
+    broken.json = whole.json;
+    broken.json.erase(list);
+    const ByteVector bytes = broken.glb();
+    for (const auto& scene : {Scene::read_multi_lod_bytes(bytes), Scene::read_bytes(bytes, "glb")})
+      CHECK((scene || !scene.error().message.empty()));
+  }
+}
+
 TEST_CASE("levels that do not fit the scene are refused") {
   GltfMaker maker = strips(2, 4);
   const Scene scene = read(maker);

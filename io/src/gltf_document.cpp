@@ -176,13 +176,16 @@ Result<GltfDocument> GltfDocument::parse(std::span<const std::byte> bytes, const
   return document;
 }
 
-std::size_t GltfDocument::count(const char* array) const {
+const Json& GltfDocument::list(const char* array) const {
+  static const Json kNone = Json::array();
   const Json* found = find_member(json_, array);
-  return found == nullptr ? 0 : found->size();
+  return found == nullptr ? kNone : *found;
 }
 
+std::size_t GltfDocument::count(const char* array) const { return list(array).size(); }
+
 Result<const Json*> GltfDocument::element(const char* array, const char* what, std::size_t index) const {
-  if (index < count(array)) return &(*find_member(json_, array))[index];
+  if (index < count(array)) return &list(array)[index];
   return fail(ErrorCode::Malformed, text(what, ' ', index, " does not exist: the file has ", count(array)));
 }
 

@@ -43,7 +43,9 @@ class GltfDocument {
   /// The JSON to change. Pre: bufferViews stay as they are, and top-level arrays stay arrays of objects.
   Json& edit() { return json_; }
 
-  /// How many objects a top-level array has, e.g. count("meshes"); 0 where there is none.
+  /// The objects of a top-level array, e.g. list("meshes"); an empty one where there is none.
+  const Json& list(const char* array) const;
+  /// How many objects a top-level array has.
   std::size_t count(const char* array) const;
   /// Returns one of them. `what` and `index` make the message: "node 7 does not exist: the file has 3".
   Result<const Json*> element(const char* array, const char* what, std::size_t index) const;

@@ -42,7 +42,7 @@ KeptNeeds find_needs(const Scene::Impl& scene) {
   std::vector<const MeshSource*> source_of(scene.document.count("meshes"));
   for (const MeshSource& source : scene.sources) source_of[source.mesh] = &source;
   for (std::size_t mesh = 0; mesh < source_of.size(); ++mesh) {
-    const Json* primitives = find_member(scene.document.json()["meshes"][mesh], "primitives");
+    const Json* primitives = find_member(scene.document.list("meshes")[mesh], "primitives");
     if (primitives == nullptr || !primitives->is_array()) continue;
     for (std::size_t i = 0; i < primitives->size(); ++i)
       if (source_of[mesh] == nullptr || !source_of[mesh]->primitives[i].replaced)

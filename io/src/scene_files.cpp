@@ -52,7 +52,7 @@ class FileNames {
 Result<std::vector<EmbeddedImage>> buffered_images(const GltfDocument& document) {
   std::vector<EmbeddedImage> images;
   for (std::size_t i = 0; i < document.count("images"); ++i) {
-    const Json& image = document.json()["images"][i];
+    const Json& image = document.list("images")[i];
     if (find_member(image, "bufferView") == nullptr) continue;
     LODESTONE_TRY(const std::size_t index, size_member(image, "bufferView", text("image ", i)));
     LODESTONE_TRY(const BufferView view, document.buffer_view(index));
@@ -100,7 +100,7 @@ Result<std::vector<AssetFile>> put_images_beside(const Scene::Impl& scene, const
   std::vector<EmbeddedImage*> homeless;
   std::set<std::string> kept;  // images of one file share it
   for (EmbeddedImage& image : images) {
-    const std::string place = place_of(scene.document.json()["images"][image.image]);
+    const std::string place = place_of(scene.document.list("images")[image.image]);
     if (place.empty() || (!kept.contains(place) && !names.take(place))) {
       homeless.push_back(&image);
     } else {

@@ -38,7 +38,7 @@ std::vector<EmbeddedImage> fetch_images(const GltfDocument& document, const File
                                         std::vector<std::string>& notes) {
   std::vector<EmbeddedImage> images;
   for (std::size_t i = 0; i < document.count("images"); ++i) {
-    const Json& image = document.json()["images"][i];
+    const Json& image = document.list("images")[i];
     const std::string uri = string_member(image, "uri");
     if (uri.empty()) continue;
     auto embedded = fetch_image(image, uri, fetch);

@@ -35,7 +35,7 @@ void grow(Box& box, const Box& other) {
 }
 
 std::vector<SceneObject> objects_of_roots(const Scene::Impl& scene) {
-  const std::vector<std::size_t> roots = find_roots(scene.document.json()["nodes"]);
+  const std::vector<std::size_t> roots = find_roots(scene.document.list("nodes"));
   std::map<std::size_t, std::size_t> object_of;
   std::vector<SceneObject> objects;
   for (std::size_t mesh = 0; mesh < scene.sources.size(); ++mesh)

@@ -168,7 +168,7 @@ void drop_materials(Json& document, const std::vector<Json>& dropped, ChannelMap
 Result<std::vector<NodeChain>> find_chains(const GltfDocument& document) {
   LODESTONE_TRY(const auto lists, lod_chains(document));
   std::set<std::size_t> children;
-  for (const Json& node : document.json()["nodes"]) {
+  for (const Json& node : document.list("nodes")) {
     LODESTONE_TRY(const auto list, size_array_member(node, "children", "node"));
     children.insert(list.begin(), list.end());
   }
@@ -179,7 +179,7 @@ Result<std::vector<NodeChain>> find_chains(const GltfDocument& document) {
 
 bool has_material_levels(const GltfDocument& document) {
   for (std::size_t i = 0; i < document.count("materials"); ++i)
-    if (GltfDocument::extension(document.json()["materials"][i], "MSFT_lod") != nullptr) return true;
+    if (GltfDocument::extension(document.list("materials")[i], "MSFT_lod") != nullptr) return true;
   return false;
 }
 

@@ -188,7 +188,7 @@ class SceneWriter {
         written = written_[mesh][level + 1];
       } else {
         const MeshSource& source = impl_.sources[mesh];
-        LODESTONE_TRY(written, write_level(builder_, impl_.document.json()["meshes"][source.mesh], source,
+        LODESTONE_TRY(written, write_level(builder_, impl_.document.list("meshes")[source.mesh], source,
                                            geometry_[mesh][level], grids_[mesh], options_));
         for (const std::string& note : written.notes) add_note(note);
       }
