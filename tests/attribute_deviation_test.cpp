@@ -57,7 +57,7 @@ TEST_CASE("a texture moved by a known length deviates by that length") {
 }
 
 TEST_CASE("weights keep what they weigh") {
-  AttributeWeights without{0, 0, 0, 0, 0};
+  AttributeWeights without{0, 0, 0, 0, 0, {}};
   {
     AttributeWeights with = without;
     with.target = 3;
@@ -72,6 +72,26 @@ TEST_CASE("weights keep what they weigh") {
     CHECK(mean_of(measure_attributes(mesh, level_of(mesh, 400, with)), "NORMAL") <
           mean_of(measure_attributes(mesh, level_of(mesh, 400, without)), "NORMAL"));
   }
+}
+
+TEST_CASE("a morph target that reaches a weight costs what its displacements times that weight would") {
+  const Mesh mesh = mesh_of(morph_grid(20));
+  Mesh displaced = mesh;
+  for (std::size_t at = 0; at < displaced.attributes[0].data.size(); at += sizeof(float)) {
+    float value = 0;
+    std::memcpy(&value, &displaced.attributes[0].data[at], sizeof value);
+    value *= 8;
+    std::memcpy(&displaced.attributes[0].data[at], &value, sizeof value);
+  }
+  AttributeWeights reaching, of_others;
+  reaching.target_reach = {8};
+  of_others.target_reach = {1, 8};
+  const auto positions = [](const Mesh& of, const AttributeWeights& weights) {
+    return level_of(of, 100, weights).positions;
+  };
+  CHECK(positions(mesh, reaching) == positions(displaced, {}));
+  CHECK(positions(mesh, of_others) == positions(mesh, {}));
+  CHECK(positions(mesh, of_others) != positions(mesh, reaching));
 }
 
 }  // namespace lodestone::test

@@ -137,6 +137,119 @@ TEST_CASE("a skinned mesh counts as large as any key frame of its joints makes i
   CHECK(scene.box().high.z == Approx(11).epsilon(0.05));
 }
 
+namespace {
+
+/// Two balls as above; the first has two morph targets that move every point by 2 and by 3 times its place.
+GltfMaker two_morphed_balls(GltfJson first = {}) {
+  GltfMaker maker = two_balls(std::move(first));
+  GltfJson& primitive = maker.json["meshes"][0]["primitives"][0];
+  for (const float factor : {2.0F, 3.0F}) {
+    std::vector<float> moves;
+    for (const Vec3f& p : icosphere(1, 0, 1).positions)
+      moves.insert(moves.end(), {factor * p.x, factor * p.y, factor * p.z});
+    primitive["targets"].push_back({{"POSITION", maker.add_floats(moves, "VEC3", 3)}});
+  }
+  return maker;
+}
+
+/// Animates weights from time 0 to 1; the path is that of a node's own channel, or a pointer.
+void animate_weights(GltfMaker& maker, const std::string& path, const std::vector<float>& values,
+                     const char* interpolation = "LINEAR") {
+  GltfJson target = {{"node", 0}, {"path", "weights"}};
+  if (path != "weights")
+    target = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", path}}}}}};
+  const GltfJson sampler = {{"input", maker.add_floats({0, 1}, "SCALAR", 1)},
+                            {"output", maker.add_floats(values, "SCALAR", 1)},
+                            {"interpolation", interpolation}};
+  maker.add("animations", {{"samplers", GltfJson::array({sampler})},
+                           {"channels", GltfJson::array({{{"sampler", 0}, {"target", target}}})}});
+}
+
+/// The largest weights of the first ball's targets, as far as it is.
+std::vector<double> reached(GltfMaker& maker) {
+  const Scene scene = read(maker);
+  std::vector<double> reach = scene.meshes()[0].target_reach;
+  for (double& weight : reach) weight *= scene.meshes()[0].scale;
+  CHECK(scene.meshes()[1].target_reach.empty());
+  CHECK(scene.meshes()[1].scale == Approx(1));
+  return reach;
+}
+
+std::vector<double> reached(const std::string& path, const std::vector<float>& values, const char* interpolation) {
+  GltfMaker maker = two_morphed_balls();
+  maker.json["meshes"][0]["weights"] = {0.5, 0};
+  animate_weights(maker, path, values, interpolation);
+  return reached(maker);
+}
+
+void check_close(const std::vector<double>& found, const std::vector<double>& expected) {
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == Approx(expected[i]).epsilon(1e-5));
+}
+
+}  // namespace
+
+TEST_CASE("each morph target counts at the largest weight that it reaches, of either sign, and never below 1") {
+  check_close(reached("weights", {0, 0, 0.5F, 0.25F}, "LINEAR"), {1, 1});
+  check_close(reached("weights", {0, 0, 0.5F, -4}, "LINEAR"), {1, 4});
+  check_close(reached("weights", {9, 9, 0, 3, 0, 0, 0, 0, 1, 3, 9, 9}, "CUBICSPLINE"), {1, 3});
+  check_close(reached("/nodes/0/weights", {0, 5, 2, 0}, "STEP"), {2, 5});
+  check_close(reached("/meshes/0/weights", {0, 6, 0, 0}, "STEP"), {1, 6});
+  check_close(reached("/nodes/0/weights/1", {0, -7}, "LINEAR"), {1, 7});
+  check_close(reached("/meshes/0/weights/0", {8, 1}, "LINEAR"), {8, 1});
+}
+
+TEST_CASE("a spline counts where it goes between its key frames") {
+  // From 0 to 0, leaving at a slope of 27: 27 t (1 − t)² is largest at a third, 4.
+  check_close(reached("/nodes/0/weights/0", {0, 0, 27, 0, 0, 0}, "CUBICSPLINE"), {4, 1});
+  check_close(reached("/nodes/0/weights/0", {0, 0, 27, 0, 0, 0}, "LINEAR"), {1, 1});
+}
+
+TEST_CASE("weights of animations that are broken, or of others, count for nothing") {
+  for (const char* path : {"/meshes/1/weights", "/meshes/77/weights", "/nodes/1/weights", "/nodes/77/weights/0",
+                           "/nodes/0/weights/2", "/nodes/0/weights/x", "/nodes/0/weights/0/1", "/nodes/0/weight",
+                           "/meshes/0/scale", "/meshes/99999999999999999999/weights"})
+    check_close(reached(path, {0, 6}, "STEP"), {1, 1});
+  check_close(reached("weights", {6, 6, 6, 6, 6, 6}, "STEP"), {1, 1});
+  check_close(reached("weights", {}, "STEP"), {1, 1});
+  GltfMaker maker = two_morphed_balls();
+  maker.json["meshes"][0]["weights"] = {"x", nullptr};
+  maker.json["nodes"][0]["weights"] = 8;
+  check_close(reached(maker), {1, 1});
+}
+
+TEST_CASE("a node's own weights stand for those of its mesh; of several nodes the largest count") {
+  GltfMaker maker = two_morphed_balls();
+  maker.json["meshes"][0]["weights"] = {4, 0};
+  check_close(reached(maker), {4, 1});
+  maker.json["nodes"][0]["weights"] = {0, 2};
+  animate_weights(maker, "/meshes/0/weights", {9, 9, 9, 9});
+  check_close(reached(maker), {1, 2});
+  add_node(maker, "again", 0, {{"weights", {0, 7}}, {"scale", {2, 2, 2}}});
+  check_close(reached(maker), {2, 14});
+  add_node(maker, "third", 0);
+  check_close(reached(maker), {9, 14});
+}
+
+TEST_CASE("a mesh counts as large as its morph targets make it, at rest and at any key frame") {
+  for (const bool at_rest : {true, false}) {
+    GltfMaker maker = two_morphed_balls({{"scale", {0.1, 0.1, 0.1}}});
+    if (at_rest)
+      maker.json["meshes"][0]["weights"] = {0, 3};
+    else
+      animate_weights(maker, "weights", {0, 0, 0, 3});
+    const Scene scene = read(maker);
+    CHECK(scene.meshes()[0].scale == Approx(1));
+    CHECK(scene.meshes()[0].area == Approx(scene.meshes()[1].area));
+    CHECK(scene.box().low.x == Approx(-1).epsilon(0.1));
+    check_close(scene.meshes()[0].target_reach, {0.1, 0.3});
+  }
+  GltfMaker smaller = two_morphed_balls();
+  animate_weights(smaller, "weights", {0, 0, -0.4F, 0});
+  CHECK(read(smaller).meshes()[0].scale == Approx(1));
+  CHECK(read(smaller).meshes()[0].area == Approx(read(smaller).meshes()[1].area));
+}
+
 TEST_CASE("animations that are broken or not of nodes leave sizes as they are at rest") {
   GltfMaker maker = two_balls({{"scale", {2, 2, 2}}});
   const std::size_t times = maker.add_floats({0, 1}, "SCALAR", 1);

@@ -244,6 +244,7 @@ StopCriteria BuildRun::stop_criteria(const SceneMesh& mesh) const {
 Result<SimplifyOptions> BuildRun::options_for(const SceneMesh& mesh) const {
   SimplifyOptions options = common_options_;
   options.stop = stop_criteria(mesh);
+  options.weights.target_reach = mesh.target_reach;
   Result<std::vector<float>> importance = vertex_importance(mesh, settings_, options_.importance);
   if (!importance) return tl::unexpected(importance.error());
   options.importance = std::move(*importance);

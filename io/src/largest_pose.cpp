@@ -23,10 +23,12 @@ bool grows(double before, double now) { return std::isfinite(now) && now > kLarg
 
 class PoseSearch {
  public:
-  PoseSearch(const GltfDocument& document, const NodeTree& tree) : document_(document), tree_(tree) {}
+  PoseSearch(const GltfDocument& document, const NodeTree& tree)
+      : document_(document), tree_(tree), found_{{}, {}, MorphRanges(document)} {}
 
   Result<void> add(std::size_t index) {
     LODESTONE_TRY(const Json* const node, document_.element("nodes", "node", index));
+    found_.morphs.add_node(index, *node);
     std::size_t& skin = found_.nodes[index].skin;
     if (find_member(*node, "skin") == nullptr) return {};
     LODESTONE_TRY(skin, size_member(*node, "skin", text("node ", index)));
@@ -40,7 +42,9 @@ class PoseSearch {
     const std::size_t count = std::min(document_.count("animations"), kMostPoses);
     std::size_t numbers = kMostNumbers, places = kMostPlaces;
     for (std::size_t i = 0; i < count && numbers > 0; ++i) {
-      const std::vector<AnimationCurve> curves = read_animation(document_, i, numbers);
+      const Animation animation = read_animation(document_, i, numbers);
+      found_.morphs.add_animation(animation.weights);
+      const std::vector<AnimationCurve>& curves = animation.places;
       const std::size_t cost = pose_cost() + curves.size();
       for (const float time : choose_key_frames(curves, tree_.at_rest(), std::min(kMostPoses / count, places / cost))) {
         places -= cost;

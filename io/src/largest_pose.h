@@ -9,6 +9,7 @@
 
 #include "gltf_document.h"
 #include "gltf_scene.h"
+#include "morph_range.h"
 #include "transform.h"
 
 namespace lodestone::detail {
@@ -25,14 +26,15 @@ struct ShownPlace {
   Transform world;
 };
 
-/// Each node, and each skin, in the pose in which it draws meshes largest.
+/// Each node, and each skin, in the pose in which it draws meshes largest; and what morph targets reach.
 struct LargestPoses {
   std::map<std::size_t, ShownPlace> nodes;
   std::map<std::size_t, PosedSkin> skins;
+  MorphRanges morphs;
 };
 
 /// Finds these poses for some nodes that show meshes, and their skins: at rest, or at one of the key frames that
-/// animations are looked at in, a bounded number of them.
+/// animations are looked at in, a bounded number of them. Of weights all key frames count.
 /// Errors: Malformed, for nodes and skins; broken animations are passed over.
 Result<LargestPoses> find_largest_poses(const GltfDocument& document, std::span<const std::size_t> nodes);
 

@@ -20,20 +20,35 @@ bool read_property(std::string_view name, AnimationCurve& curve) {
   if (name == "translation") curve.property = Property::Translation;
   if (name == "rotation") curve.property = Property::Rotation;
   if (name == "scale") curve.property = Property::Scale;
-  curve.width = name == "rotation" ? 4 : 3;
-  return name == "translation" || name == "rotation" || name == "scale";
+  if (name == "weights") curve.property = Property::Weights;
+  curve.width = name == "rotation" ? 4 : name == "weights" ? 0 : 3;
+  return name == "translation" || name == "rotation" || name == "scale" || name == "weights";
 }
 
-constexpr std::string_view kNodes = "/nodes/";
+/// Takes "/3" or "/3/…" from the beginning of a text.
+bool take_number(std::string_view& text, std::size_t& number) {
+  if (!text.starts_with('/')) return false;
+  const std::size_t end = std::min(text.find('/', 1), text.size());
+  const auto [stop, error] = std::from_chars(text.data() + 1, text.data() + end, number);
+  if (error != std::errc{} || stop != text.data() + end) return false;
+  text.remove_prefix(end);
+  return true;
+}
 
-/// Reads "/nodes/3/scale".
+constexpr std::string_view kNodes = "/nodes", kMeshes = "/meshes", kWeights = "/weights";
+
+/// Reads "/nodes/3/scale", "/nodes/3/weights", "/meshes/3/weights/0".
 bool read_pointer(std::string_view pointer, AnimationCurve& curve) {
-  if (!pointer.starts_with(kNodes)) return false;
-  pointer.remove_prefix(kNodes.size());
-  const std::size_t slash = std::min(pointer.find('/'), pointer.size());
-  const auto [end, error] = std::from_chars(pointer.data(), pointer.data() + slash, curve.node);
-  if (error != std::errc{} || end != pointer.data() + slash || slash == pointer.size()) return false;
-  return read_property(pointer.substr(slash + 1), curve);
+  const bool of_mesh = pointer.starts_with(kMeshes);
+  if (!of_mesh && !pointer.starts_with(kNodes)) return false;
+  pointer.remove_prefix(of_mesh ? kMeshes.size() : kNodes.size());
+  if (!take_number(pointer, of_mesh ? curve.mesh : curve.node) || !pointer.starts_with('/')) return false;
+  if (!pointer.starts_with(kWeights)) return !of_mesh && read_property(pointer.substr(1), curve);
+  curve.property = Property::Weights;
+  pointer.remove_prefix(kWeights.size());
+  if (!take_number(pointer, curve.target)) return pointer.empty();
+  curve.width = 1;
+  return pointer.empty();
 }
 
 bool read_target(const Json& target, AnimationCurve& curve) {
@@ -63,6 +78,8 @@ bool read_sampler(const GltfDocument& document, const Json& sampler, AnimationCu
   curve.times = read_floats(document, sampler, "input");
   curve.values = read_floats(document, sampler, "output");
   const std::size_t values = curve.times.size() * (curve.interpolation == Interpolation::Cubic ? 3 : 1);
+  const bool has_all_weights = curve.property == Property::Weights && curve.width == 0;
+  if (has_all_weights && values > 0) curve.width = curve.values.size() / values;
   return values > 0 && curve.values.size() == values * curve.width && all_finite(curve.times) &&
          all_finite(curve.values) && std::is_sorted(curve.times.begin(), curve.times.end());
 }
@@ -75,7 +92,7 @@ struct Peak {
   float time = 0;
 };
 
-Peak find_peak(const AnimationCurve& curve, const LocalPlace& at_rest) {
+Peak find_growth(const AnimationCurve& curve, const LocalPlace& at_rest) {
   Peak peak;
   const double rest = largest(at_rest.scale.x, at_rest.scale.y, at_rest.scale.z);
   for (std::size_t i = 0; i < curve.times.size(); ++i) {
@@ -97,7 +114,7 @@ std::vector<float> find_peak_times(std::span<const AnimationCurve> curves, std::
   std::vector<Peak> peaks;
   for (const AnimationCurve& curve : curves)
     if (curve.property == Property::Scale) {
-      const Peak peak = find_peak(curve, at_rest[curve.node]);
+      const Peak peak = find_growth(curve, at_rest[curve.node]);
       if (peak.growth > 1) peaks.push_back(peak);
     }
   std::stable_sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.growth > b.growth; });
@@ -108,48 +125,85 @@ std::vector<float> find_peak_times(std::span<const AnimationCurve> curves, std::
   return times;
 }
 
-/// The value of a curve at a time.
-std::array<double, 4> value_at(const AnimationCurve& curve, float time) {
-  const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), time);
-  const auto right = std::min(static_cast<std::size_t>(after - curve.times.begin()), curve.times.size() - 1);
-  const std::size_t left = after == curve.times.begin() ? 0 : static_cast<std::size_t>(after - curve.times.begin()) - 1;
-  const double span = static_cast<double>(curve.times[right]) - static_cast<double>(curve.times[left]);
-  const double t = span > 0 ? (static_cast<double>(time) - static_cast<double>(curve.times[left])) / span : 0;
-  std::array<double, 4> value{};
-  for (std::size_t i = 0; i < curve.width; ++i) {
-    const double a = curve.key(left)[i], b = curve.key(right)[i];
-    value[i] = curve.interpolation == Interpolation::Step ? a : a + t * (b - a);
-    if (curve.interpolation != Interpolation::Cubic) continue;
-    const double out = span * static_cast<double>(curve.values[(3 * left + 2) * curve.width + i]);
-    const double in = span * static_cast<double>(curve.values[3 * right * curve.width + i]);
-    const double t2 = t * t, t3 = t2 * t;
-    value[i] = (2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * out + (3 * t2 - 2 * t3) * b + (t3 - t2) * in;
-  }
-  return value;
+/// Two neighbouring key frames, and a place between them.
+struct KeySpan {
+  std::size_t left = 0, right = 0;
+  double length = 0;  // in time
+  double t = 0;       // 0 at the left one, 1 at the right one
+};
+
+KeySpan find_span(const AnimationCurve& curve, float time) {
+  const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), time) - curve.times.begin();
+  KeySpan span;
+  span.right = std::min(static_cast<std::size_t>(after), curve.times.size() - 1);
+  span.left = after == 0 ? 0 : static_cast<std::size_t>(after) - 1;
+  span.length = static_cast<double>(curve.times[span.right]) - static_cast<double>(curve.times[span.left]);
+  if (span.length > 0) span.t = (static_cast<double>(time) - static_cast<double>(curve.times[span.left])) / span.length;
+  return span;
+}
+
+/// Coefficients of a number between two key frames, by powers of t.
+std::array<double, 4> polynomial(const AnimationCurve& curve, const KeySpan& span, std::size_t number) {
+  const double a = curve.key(span.left)[number], b = curve.key(span.right)[number];
+  if (curve.interpolation == Interpolation::Step) return {a, 0, 0, 0};
+  if (curve.interpolation == Interpolation::Linear) return {a, b - a, 0, 0};
+  const double out = span.length * static_cast<double>(curve.values[(3 * span.left + 2) * curve.width + number]);
+  const double in = span.length * static_cast<double>(curve.values[3 * span.right * curve.width + number]);
+  return {a, out, 3 * (b - a) - 2 * out - in, 2 * (a - b) + out + in};
+}
+
+double value_of(const std::array<double, 4>& p, double t) { return p[0] + t * (p[1] + t * (p[2] + t * p[3])); }
+
+/// Where the derivative of a cubic polynomial is 0; no number where there is no such place.
+std::array<double, 2> turning_points(const std::array<double, 4>& p) {
+  const double a = 3 * p[3], half = p[2], c = p[1];
+  const double q = -(half + std::copysign(std::sqrt(half * half - a * c), half));
+  return {q / a, c / q};
 }
 
 }  // namespace
 
-std::vector<AnimationCurve> read_animation(const GltfDocument& document, std::size_t index, std::size_t& most_numbers) {
-  std::vector<AnimationCurve> curves;
+double value_at(const AnimationCurve& curve, float time, std::size_t number) {
+  const KeySpan span = find_span(curve, time);
+  return value_of(polynomial(curve, span, number), span.t);
+}
+
+CurvePeak find_peak(const AnimationCurve& curve, std::size_t number) {
+  CurvePeak peak;
+  const auto look_at = [&](double value, double time) {
+    if (std::abs(value) > peak.value) peak = {std::abs(value), static_cast<float>(time)};
+  };
+  for (std::size_t i = 0; i < curve.times.size(); ++i) {
+    look_at(curve.key(i)[number], curve.times[i]);
+    if (curve.interpolation != Interpolation::Cubic || i + 1 == curve.times.size()) continue;
+    const double begin = curve.times[i], length = static_cast<double>(curve.times[i + 1]) - begin;
+    const std::array<double, 4> cubic = polynomial(curve, {i, i + 1, length, 0}, number);
+    for (const double t : turning_points(cubic))
+      if (t > 0 && t < 1) look_at(value_of(cubic, t), begin + t * length);
+  }
+  return peak;
+}
+
+Animation read_animation(const GltfDocument& document, std::size_t index, std::size_t& most_numbers) {
+  Animation read;
   const auto animation = document.element("animations", "animation", index);
   const Json* channels = animation ? find_member(**animation, "channels") : nullptr;
   const Json* samplers = animation ? find_member(**animation, "samplers") : nullptr;
-  if (channels == nullptr || !channels->is_array() || samplers == nullptr || !samplers->is_array()) return curves;
+  if (channels == nullptr || !channels->is_array() || samplers == nullptr || !samplers->is_array()) return read;
   for (const Json& channel : *channels) {
     AnimationCurve curve;
     const Json* target = find_member(channel, "target");
     const auto sampler = size_member(channel, "sampler", "");
     if (target == nullptr || !sampler || *sampler >= samplers->size() || !read_target(*target, curve)) continue;
-    if (curve.node >= document.count("nodes")) continue;
+    if (curve.mesh == kNoNode && curve.node >= document.count("nodes")) continue;
     const bool is_good = read_sampler(document, (*samplers)[*sampler], curve);
     const std::size_t numbers = curve.times.size() + curve.values.size();
     if (numbers > most_numbers) most_numbers = 0;
     if (most_numbers == 0) break;
     most_numbers -= numbers;
-    if (is_good) curves.push_back(std::move(curve));
+    if (is_good) (curve.property == Property::Weights ? read.weights : read.places).push_back(std::move(curve));
   }
-  return curves;
+  return read;
 }
 
 std::vector<float> choose_key_frames(std::span<const AnimationCurve> curves, std::span<const LocalPlace> at_rest,
@@ -167,7 +221,9 @@ std::vector<float> choose_key_frames(std::span<const AnimationCurve> curves, std
 void apply(std::span<const AnimationCurve> curves, float time, std::span<LocalPlace> nodes) {
   for (const AnimationCurve& curve : curves) {
     LocalPlace& node = nodes[curve.node];
-    const std::array<double, 4> value = value_at(curve, time);
+    const KeySpan span = find_span(curve, time);
+    std::array<double, 4> value{};
+    for (std::size_t i = 0; i < curve.width; ++i) value[i] = value_of(polynomial(curve, span, i), span.t);
     if (curve.property == Property::Translation) node.translation = {value[0], value[1], value[2]};
     if (curve.property == Property::Scale) node.scale = {value[0], value[1], value[2]};
     if (curve.property != Property::Rotation) continue;

@@ -9,6 +9,7 @@
 #include "gltf_scene.h"
 #include "gltf_skin.h"
 #include "largest_pose.h"
+#include "morph_targets.h"
 #include "text.h"
 #include "transform.h"
 #include "try.h"
@@ -51,6 +52,9 @@ Result<std::vector<Transform>> read_copies(const GltfDocument& document, const J
   return copies;
 }
 
+// What is larger by rounding alone stays at rest.
+constexpr double kLarger = 1.001;
+
 const Box kNowhere{Vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL), Vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
 
 void grow(Box& box, const Vec3& p) {
@@ -67,6 +71,30 @@ double area_of(const Mesh& mesh, std::span<const Vec3> points) {
   return area;
 }
 
+/// How much longer the edges of faces are than those of the mesh, in the mean of their squares.
+double growth_of(const Mesh& mesh, std::span<const Vec3> points) {
+  double before = 0, now = 0;
+  for (std::size_t i = 0; i < mesh.corner_wedge.size(); ++i) {
+    const Index a = mesh.corner_wedge[i], b = mesh.corner_wedge[i % 3 == 2 ? i - 2 : i + 1];
+    before += squared_length(Vec3(mesh.positions[mesh.wedge_vertex[a]]) - Vec3(mesh.positions[mesh.wedge_vertex[b]]));
+    now += squared_length(points[a] - points[b]);
+  }
+  const double growth = std::sqrt(now / before);
+  return std::isfinite(growth) ? growth : 1;
+}
+
+Box box_of(std::span<const Vec3> points) {
+  Box box = kNowhere;
+  for (const Vec3& p : points) grow(box, p);
+  return box;
+}
+
+/// A mesh by its wedges, as morph targets have it when it is largest.
+struct MorphedMesh {
+  std::vector<Vec3> points;
+  double growth = 1;  // of its lengths, at least 1
+};
+
 /// Measures the instances of one mesh after the other.
 class InstanceMeasure {
  public:
@@ -76,9 +104,15 @@ class InstanceMeasure {
     SceneMesh& mesh = scene_.meshes[number];
     mesh.scale = 0;
     const Skinner skinner(mesh.mesh.attributes);
+    const MorphTargets targets(mesh.mesh.attributes);
+    mesh.target_reach.assign(targets.count(), 0);
     for (const std::size_t node : scene_.sources[number].nodes) {
       here_ = NodePresence{};
+      const std::vector<const MorphRange*> ranges = poses_.morphs.of(node);
+      LODESTONE_TRY(shown_, morph(mesh.mesh, targets, ranges));
       LODESTONE_CHECK(add_node(mesh, skinner, node));
+      note_reach(ranges, mesh.target_reach);
+      here_.scale *= shown_.growth;
       mesh.scale = std::max(mesh.scale, here_.scale);
       mesh.area += here_.area;
       mesh.instance_count += here_.instance_count;
@@ -86,12 +120,52 @@ class InstanceMeasure {
     }
     // What is drawn as a point everywhere has no size in the world, but errors must not vanish by it.
     if (!(mesh.scale > 0) || !std::isfinite(mesh.scale)) mesh.scale = 1;
+    for (double& reach : mesh.target_reach) reach = reach > 0 && std::isfinite(reach) ? reach / mesh.scale : 1;
     return {};
   }
 
   Box box() const { return box_.low.x <= box_.high.x ? box_ : Box{}; }
 
  private:
+  Result<void> count_points(std::size_t points) {
+    placed_ += points;
+    if (placed_ <= kMaxPlacedPoints) return {};
+    return fail(ErrorCode::LimitExceeded, text("gltf: the scene has more than ", kMaxPlacedPoints, " points"));
+  }
+
+  /// Returns the mesh at rest, or at one of its animations' peaks where it is larger. No more of those are looked at
+  /// than there may be points.
+  Result<MorphedMesh> morph(const Mesh& mesh, const MorphTargets& targets, std::span<const MorphRange* const> ranges) {
+    MorphedMesh largest;
+    for (const Index vertex : mesh.wedge_vertex) largest.points.push_back(Vec3(mesh.positions[vertex]));
+    if (ranges.empty() || targets.count() == 0) return largest;
+    const std::vector<Vec3> base = largest.points;
+    LODESTONE_CHECK(count_points(base.size() * targets.count_shown(ranges[0]->at_rest)));
+    targets.move(largest.points, ranges[0]->at_rest);
+    largest.growth = std::max(1.0, growth_of(mesh, largest.points));
+    for (const MorphRange* range : ranges)
+      for (const TargetWeights& weights : range->peaks) {
+        const std::size_t cost = base.size() * (1 + targets.count_shown(weights));
+        if (cost > kMaxPlacedPoints - placed_) return largest;
+        placed_ += cost;
+        std::vector<Vec3> points = base;
+        targets.move(points, weights);
+        largest.growth = std::max(largest.growth, growth_of(mesh, points));
+        if (box_of(points).diagonal() > kLarger * box_of(largest.points).diagonal()) largest.points = std::move(points);
+      }
+    return largest;
+  }
+
+  /// Notes how far the node at hand moves points by the displacements of each target, in the world.
+  void note_reach(std::span<const MorphRange* const> ranges, std::vector<double>& reach) const {
+    for (std::size_t i = 0; i < reach.size(); ++i) {
+      double weight = 1;
+      for (const MorphRange* range : ranges)
+        if (i < range->largest.size()) weight = std::max(weight, double{range->largest[i]});
+      reach[i] = std::max(reach[i], here_.scale * weight);
+    }
+  }
+
   Result<void> add_node(SceneMesh& mesh, const Skinner& skinner, std::size_t index) {
     const std::string where = text("node ", index);
     LODESTONE_TRY(const Json* const node, scene_.document.element("nodes", "node", index));
@@ -118,15 +192,11 @@ class InstanceMeasure {
   template <class Place>
   Result<void> add_points(SceneMesh& mesh, const Place& place) {
     ++here_.instance_count;
-    placed_ += mesh.mesh.wedge_count();
-    if (placed_ > kMaxPlacedPoints)
-      return fail(ErrorCode::LimitExceeded, text("gltf: the scene has more than ", kMaxPlacedPoints, " points"));
+    LODESTONE_CHECK(count_points(mesh.mesh.wedge_count()));
     points_.clear();
-    Box box = kNowhere;
-    for (std::size_t wedge = 0; wedge < mesh.mesh.wedge_count(); ++wedge) {
-      points_.push_back(place(wedge, Vec3(mesh.mesh.positions[mesh.mesh.wedge_vertex[wedge]])));
-      grow(box, points_.back());
-    }
+    for (std::size_t wedge = 0; wedge < mesh.mesh.wedge_count(); ++wedge)
+      points_.push_back(place(wedge, shown_.points[wedge]));
+    const Box box = box_of(points_);
     for (const Vec3& corner : {box.low, box.high}) grow(box_, corner);
     if (!(here_.box.diagonal() > box.diagonal())) here_.box = box;
     here_.area += area_of(mesh.mesh, points_);
@@ -135,6 +205,7 @@ class InstanceMeasure {
 
   Scene::Impl& scene_;
   const LargestPoses& poses_;
+  MorphedMesh shown_;  // by the node at hand, in the mesh's own units
   std::vector<Vec3> points_;
   std::size_t placed_ = 0;
   NodePresence here_;  // of the node at hand

@@ -5,13 +5,26 @@
 #include "attribute_cost.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "finite_values.h"
 
 namespace lodestone::detail {
+namespace {
+
+/// Of the morph target that an attribute belongs to.
+double reach_of(std::string_view name, std::span<const double> reaches) {
+  std::size_t number = reaches.size();
+  name.remove_prefix(std::string_view("TARGET_").size());
+  std::from_chars(name.data(), name.data() + name.size(), number);
+  return number < reaches.size() ? reaches[number] : 1;
+}
+
+}  // namespace
 
 AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) : textures_(mesh) {
   std::size_t texture = 0;
@@ -22,7 +35,7 @@ AttributeCost::AttributeCost(const Mesh& mesh, const AttributeWeights& weights) 
     if (name.starts_with("COLOR_")) add_channel(attribute, Kind::Value, weights.color);
     if (name.starts_with("JOINTS_")) add_skin(mesh, attribute, weights.skin);
     if (name.starts_with("TARGET_") && name.ends_with(":POSITION"))
-      add_channel(attribute, Kind::Displacement, weights.target);
+      add_channel(attribute, Kind::Displacement, weights.target * reach_of(name, weights.target_reach));
   }
 }
 

@@ -45,6 +45,8 @@ struct AttributeWeights {
   double color = 0.5;     ///< COLOR_n: difference of values, times the star's radius
   double skin = 3;        ///< JOINTS_n, WEIGHTS_n: share of weight that goes to other joints, times the star's radius
   double target = 3;      ///< morph targets ("TARGET_i:POSITION"): difference of displacements
+  /// By number i of the morph target: the largest weight that it is shown at, which multiplies `target`; 1 for others.
+  std::vector<double> target_reach;
 };
 
 /// A vertex of at least this importance stays.
