@@ -821,6 +821,27 @@ TEST_CASE("images come into the file, and those that are missing are noted") {
   CHECK(out.json["images"][2] == GltfJson{{"uri", "missing.png"}});
 }
 
+TEST_CASE("images of every kind come into the file under its type, others stay where they were") {
+  const std::pair<std::string, std::string> kinds[] = {
+      {"iVBORw0KGgoAAAA=", "image/png"},          {"/9j/4AA=", "image/jpeg"},
+      {"UklGRiQAAABXRUJQVlA4IA==", "image/webp"}, {"q0tUWCAyMLsNChoKAAAA", "image/ktx2"},
+      {"AAAAIGZ0eXBhdmlmAAA=", "image/avif"},     {"RERTIHwAAAA=", "image/vnd-ms.dds"}};
+  GltfMaker maker = strips(1, 4);
+  for (const auto& [content, type] : kinds)
+    maker.add("images", {{"uri", "data:application/octet-stream;base64," + content}});
+  const std::string unknown = "data:application/octet-stream;base64,AAAA";
+  maker.add("images", {{"uri", unknown}});
+  const Scene scene = read(maker);
+  const GltfFile out = encoded(scene, {});
+  for (std::size_t i = 0; i < std::size(kinds); ++i) {
+    CHECK(out.json["images"][i]["mimeType"] == kinds[i].second);
+    CHECK(out.image_bytes(i) == decode_base64(kinds[i].first));
+  }
+  CHECK(out.json["images"].back() == GltfJson{{"uri", unknown}});
+  REQUIRE(scene.notes().size() == 1);
+  CHECK_THAT(scene.notes()[0], contains("image 6 stays outside the file"));
+}
+
 TEST_CASE("meshes of equal scale share one grid, so that equal places decode to equal places") {
   GltfMaker maker = strips(1, 7);
   GltfJson other = strip_primitive(maker, 7, 13);

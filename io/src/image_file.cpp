@@ -18,10 +18,12 @@ struct ImageType {
   const char* mime_type;
 };
 
-constexpr std::array<ImageType, 5> kImageTypes = {{{"\x89PNG\r\n\x1a\n"sv, 0, "image/png"},
+constexpr std::array<ImageType, 7> kImageTypes = {{{"\x89PNG\r\n\x1a\n"sv, 0, "image/png"},
                                                    {"\xff\xd8\xff"sv, 0, "image/jpeg"},
                                                    {"WEBP"sv, 8, "image/webp"},
                                                    {"\xabKTX 20\xbb\r\n\x1a\n"sv, 0, "image/ktx2"},
+                                                   {"ftypavif"sv, 4, "image/avif"},
+                                                   {"DDS "sv, 0, "image/vnd-ms.dds"},
                                                    {"sB"sv, 0, "image/x-basis"}}};
 
 constexpr std::size_t kPngColorType = 25;

@@ -8,10 +8,13 @@
 namespace lodestone::detail {
 namespace {
 
-/// Goes by the content, since extensions and declared types are often wrong; else by what the document declares.
-std::string mime_type_of(std::span<const std::byte> bytes, const std::string& declared) {
+/// Goes by the content, since extensions and declared types are often wrong; else by what the document declares, and
+/// data URIs where they name an image's type.
+std::string mime_type_of(std::span<const std::byte> bytes, const Json& image, const std::string& uri) {
   std::string type = image_type(bytes);
-  return type.empty() ? declared : type;
+  if (type.empty()) type = string_member(image, "mimeType");
+  if (type.empty() && uri.starts_with("data:image/")) type = uri.substr(5, uri.find_first_of(";,") - 5);
+  return type;
 }
 
 Result<EmbeddedImage> fetch_image(const Json& image, const std::string& uri, const FileFetcher& fetch) {
@@ -22,9 +25,7 @@ Result<EmbeddedImage> fetch_image(const Json& image, const std::string& uri, con
     LODESTONE_TRY(const std::filesystem::path path, uri_to_path(uri, "image"));
     LODESTONE_TRY(embedded.bytes, fetch(path));
   }
-  std::string declared = string_member(image, "mimeType");
-  if (declared.empty() && uri.starts_with("data:")) declared = uri.substr(5, uri.find_first_of(";,") - 5);
-  embedded.mime_type = mime_type_of(embedded.bytes, declared);
+  embedded.mime_type = mime_type_of(embedded.bytes, image, uri);
   if (embedded.bytes.empty() || embedded.mime_type.empty())
     return fail(ErrorCode::Unsupported, "no known format of images");
   return embedded;

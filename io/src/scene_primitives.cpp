@@ -82,7 +82,7 @@ class GeometryWriter {
 
   /// Returns what clients get of the level. Pre: it is written, with `measure` set.
   Result<Mesh> decoded() {
-    if (!options_.draco) return *level_.mesh;
+    if (!options_.draco) return with_attributes(*level_.mesh, level_.columns);
     complete_attributes(source_, decoded_);
     return joined(decoded_);
   }
@@ -318,7 +318,7 @@ bool belongs_to(const Attribute& a, const MeshColumn& column) {
 }  // namespace
 
 Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source) {
-  LevelGeometry level{&mesh, {}};
+  LevelGeometry level{&mesh, {}, {}};
   for (const MeshColumn& column : source.columns) {
     const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
                                     [&](const Attribute& a) { return belongs_to(a, column); });

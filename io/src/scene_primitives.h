@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,8 @@ namespace lodestone::detail {
 /// A level of a mesh, with the attributes its primitives are made of.
 struct LevelGeometry {
   const Mesh* mesh = nullptr;
-  std::vector<const Attribute*> columns;  ///< one for each of the source's columns
+  std::vector<const Attribute*> columns;                     ///< one for each of the source's columns
+  std::map<std::size_t, std::unique_ptr<Attribute>> mended;  ///< columns that are no longer the mesh's own
 };
 
 /// Finds the source's columns in a level. Errors: InvalidArgument where one is missing or the materials are no

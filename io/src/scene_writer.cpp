@@ -19,6 +19,7 @@
 #include "scene_impl.h"
 #include "scene_levels.h"
 #include "scene_materials.h"
+#include "scene_mending.h"
 #include "scene_nodes.h"
 #include "scene_objects.h"
 #include "scene_primitives.h"
@@ -162,6 +163,7 @@ class SceneWriter {
       geometry_.emplace_back();
       for (std::size_t level = 0; level < range_.count; ++level) {
         LODESTONE_TRY(LevelGeometry matched, match_level(level_of(mesh, level).mesh, impl_.sources[mesh]));
+        if (!repeats_original(mesh, level)) mend_attributes(impl_.sources[mesh], matched);
         geometry_.back().push_back(std::move(matched));
       }
     }
@@ -173,6 +175,11 @@ class SceneWriter {
       layout_.position_bits = std::max(layout_.position_bits, grid.bits);
     }
     return {};
+  }
+
+  /// The finest level keeps what it has, and those that share its data.
+  bool repeats_original(std::size_t mesh, std::size_t level) const {
+    return range_.first + level == 0 || same_mesh(level_of(mesh, level).mesh, meshes_[mesh].levels[0].mesh);
   }
 
   bool repeats_coarser(std::size_t mesh, std::size_t level) const {
