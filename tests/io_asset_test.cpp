@@ -1,5 +1,7 @@
 #include <lodestone/io/asset.h>
 
+#include <sys/resource.h>
+
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -74,6 +76,13 @@ double farthest_vertex(const Mesh& a, const Mesh& b, double beyond = 1e9) {
     farthest = std::max(farthest, nearest);
   }
   return farthest;
+}
+
+/// The most memory that this process has had.
+long peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024;
 }
 
 /// The values of a mesh's one attribute, by where they are.
@@ -278,6 +287,29 @@ TEST_CASE("what draco cannot predict it encodes in another way") {
   CHECK(decoded(encoding).levels[0].draco);
   CHECK(decoded(encoding).levels[0].mesh.face_count() == levels[0].mesh.face_count());
   CHECK(farthest_vertex(levels[0].mesh, decoded(encoding).levels[0].mesh) < 1e-5);
+}
+
+TEST_CASE("however fine a grid is, draco takes no more memory than the mesh is worth") {
+  std::vector<AssetLevel> levels(1);
+  levels[0].mesh = mesh_of(seam_sphere(12, 9));
+  const long before = peak_megabytes();
+  for (const int bits : {24, 25, 27, 30})
+    for (const int level : {7, 10}) {
+      AssetOptions options;
+      options.draco_compression_level = level;
+      options.draco_position_bits = options.draco_normal_bits = options.draco_texcoord_bits = bits;
+      const EncodedAsset encoding = encoded(levels, options);
+      INFO("bits " << bits << ", level " << level);
+      CHECK(encoding.layout.notes.empty());
+      const Asset asset = decoded(encoding);
+      CHECK(asset.levels[0].draco);
+      CHECK(asset.levels[0].mesh.face_count() == levels[0].mesh.face_count());
+      CHECK(farthest_vertex(levels[0].mesh, asset.levels[0].mesh) < 1e-6);
+    }
+  AssetOptions options;
+  options.draco_position_grid = PositionGrid{{}, std::ldexp(1.0F, -28)};
+  CHECK(farthest_vertex(levels[0].mesh, decoded(encoded(levels, options)).levels[0].mesh) < 1e-6);
+  if (!kReduced) CHECK(peak_megabytes() - before < 256);  // a sanitizer has its own limit on allocations
 }
 
 TEST_CASE("integer attributes pass draco exactly") {

@@ -3,6 +3,8 @@
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -11,6 +13,9 @@
 
 namespace lodestone::detail {
 namespace {
+
+// Draco counts how often each symbol comes in tables of four bytes for every one there can be: with 30 bits, 4 GiB.
+constexpr int kMostTableBits = 24;
 
 draco::DataType draco_type(ComponentType type) {
   switch (type) {
@@ -101,6 +106,41 @@ void set_grid(draco::Options& options, const QuantizationGrid& grid) {
   options.SetString("quantization_range", exact_text(grid.range));
 }
 
+/// Whether values span more steps of their grid than Draco can count the symbols of.
+bool is_too_fine(std::span<const float> values, std::size_t component_count, const QuantizationGrid& grid) {
+  if (grid.bits <= kMostTableBits) return false;
+  double widest = 0;
+  for (std::size_t c = 0; c < component_count; ++c) {
+    float low = HUGE_VALF, high = -HUGE_VALF;
+    for (std::size_t i = c; i < values.size(); i += component_count) {
+      low = std::min(low, values[i]);
+      high = std::max(high, values[i]);
+    }
+    widest = std::max(widest, (static_cast<double>(high) - static_cast<double>(low)) / grid.step());
+  }
+  return widest >= std::ldexp(1.0, kMostTableBits);
+}
+
+bool is_too_fine(const Mesh& mesh, const QuantizationGrids& grids) {
+  const std::span positions(reinterpret_cast<const float*>(mesh.positions.data()), 3 * mesh.vertex_count());
+  if (is_too_fine(positions, 3, grids.position)) return true;
+  for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
+    const Attribute& a = mesh.attributes[i];
+    if (a.type != ComponentType::Float32) continue;
+    if (a.name == "NORMAL" && grids.attributes[i].bits > kMostTableBits) return true;
+    if (is_too_fine(attribute_values(a), a.component_count, grids.attributes[i])) return true;
+  }
+  return false;
+}
+
+/// Stores what Draco predicts wrongly as it is, without any table of symbols; its highest levels have another.
+void set_compression(draco::ExpertEncoder& encoder, int level, bool with_tables) {
+  constexpr int kMostWithoutTables = 8;
+  const int speed = 10 - (with_tables ? level : std::min(level, kMostWithoutTables));
+  encoder.SetSpeedOptions(speed, speed);
+  encoder.SetUseBuiltInAttributeCompression(with_tables);
+}
+
 /// Says how an attribute is quantised, and how texture coordinates are predicted.
 draco::Options attribute_options(const Attribute& attribute, const QuantizationGrid& grid, const DracoCoding& coding) {
   draco::Options options;
@@ -132,7 +172,7 @@ Result<DracoPrimitive> encode_draco(const Mesh& mesh, const QuantizationGrids& g
   try {
     const MeshBuilder builder(mesh);
     draco::ExpertEncoder encoder(builder.mesh());
-    encoder.SetSpeedOptions(10 - compression_level, 10 - compression_level);
+    set_compression(encoder, compression_level, !is_too_fine(mesh, grids));
     if (coding.method == DracoMethod::Sequential) encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
     set_attributes(encoder, builder, mesh, grids, coding);
     draco::EncoderBuffer buffer;
