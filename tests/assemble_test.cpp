@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <set>
 
 #include <lodestone/core/validate.h>
 
+#include "support/cad_shapes.h"
+#include "support/data.h"
 #include "support/mesh_properties.h"
 
 namespace lodestone::test {
@@ -16,6 +20,46 @@ TriangleSoup two_triangles() {
   soup.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   soup.indices = {0, 1, 2, 3, 4, 5};
   return soup;
+}
+
+constexpr AssemblyOptions kTurning{.turn_faces = true};
+
+/// Every manifold family, those of engineering among them.
+std::vector<NamedShape> sound_shapes() {
+  std::vector<NamedShape> shapes = manifold_shapes();
+  for (CadShape& shape : cad_shapes(1)) shapes.push_back({shape.name, std::move(shape.soup), true, std::nullopt});
+  std::erase_if(shapes, [](const NamedShape& shape) { return shape.soup.indices.empty(); });
+  return shapes;
+}
+
+bool has_normals(const TriangleSoup& soup) {
+  return std::any_of(soup.attributes.begin(), soup.attributes.end(),
+                     [](const Attribute& attribute) { return attribute.name == "NORMAL"; });
+}
+
+std::size_t count_borders(const Mesh& mesh) {
+  const auto connectivity = Connectivity::build(mesh);
+  REQUIRE(connectivity);
+  REQUIRE(validate(*connectivity));
+  std::size_t count = 0;
+  for (Index c = 0; c < mesh.corner_wedge.size(); ++c) count += connectivity->opposite(c) == kNoIndex ? 1 : 0;
+  return count;
+}
+
+/// The faces' places, whichever way they wind.
+std::multiset<std::set<Place>> places_of(const Mesh& mesh) {
+  std::multiset<std::set<Place>> faces;
+  for (Index c = 0; c < mesh.corner_wedge.size(); c += 3)
+    faces.insert({place_of(mesh, mesh.corner_vertex(c)), place_of(mesh, mesh.corner_vertex(c + 1)),
+                  place_of(mesh, mesh.corner_vertex(c + 2))});
+  return faces;
+}
+
+/// Six times the volume that a closed mesh encloses, positive where it looks outwards.
+double volume_of(const Mesh& mesh) {
+  double volume = 0;
+  for (Index f = 0; f < mesh.face_count(); ++f) volume += dot(mesh.corner_position(3 * f), area_vector(mesh, f));
+  return volume;
 }
 
 }  // namespace
@@ -114,14 +158,6 @@ TEST_CASE("sheets that lie on one another stay sheets, whatever order their face
   for (const NamedShape& sister : manifold_shapes()) {
     if (!sister.soup.face_material.empty()) continue;
     const Mesh once = mesh_of(sister.soup);
-    const auto count_borders = [](const Mesh& mesh) {
-      const auto connectivity = Connectivity::build(mesh);
-      REQUIRE(connectivity);
-      REQUIRE(validate(*connectivity));
-      std::size_t count = 0;
-      for (Index c = 0; c < mesh.corner_wedge.size(); ++c) count += connectivity->opposite(c) == kNoIndex ? 1 : 0;
-      return count;
-    };
     for (const TriangleSoup& soup : {stacked(sister.soup, 2), layered(sister.soup, 3), two_sided(sister.soup)})
       for (const TriangleSoup& sheets : {soup, shuffled(soup, 1)}) {
         INFO(sister.name);
@@ -131,6 +167,117 @@ TEST_CASE("sheets that lie on one another stay sheets, whatever order their face
         CHECK(mesh.vertex_count() == count * once.vertex_count());
         CHECK(count_borders(mesh) == count * count_borders(once));
       }
+  }
+}
+
+TEST_CASE("faces of any winding are turned to wind alike where that is allowed, and closed shapes look outwards") {
+  for (const NamedShape& shape : sound_shapes()) {
+    const Mesh sound = mesh_of(shape.soup);
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      INFO(shape.name << ", seed " << seed);
+      const auto assembled = assemble(misturned(shape.soup, 0.5, seed), kTurning);
+      REQUIRE(assembled);
+      CHECK(validate(assembled->mesh));
+      CHECK(assembled->report.nonmanifold_edges + assembled->report.cut_vertices == 0);
+      CHECK(places_of(assembled->mesh) == places_of(sound));
+      CHECK(count_borders(assembled->mesh) == count_borders(sound));
+      if (count_borders(sound) == 0) CHECK(volume_of(assembled->mesh) == Approx(volume_of(sound)));
+    }
+  }
+}
+
+TEST_CASE("faces that are few, or that face away from their normals, come back as they were") {
+  for (const NamedShape& shape : sound_shapes()) {
+    if (shape.name == "12 components") continue;  // of 20 faces each, few
+    const double share = has_normals(shape.soup) ? 0.7 : 0.05;
+    INFO(shape.name);
+    const TriangleSoup soup = misturned(shape.soup, share, 7);
+    const auto assembled = assemble(soup, kTurning);
+    REQUIRE(assembled);
+    CHECK(triangle_set(assembled->mesh) == triangle_set(mesh_of(shape.soup)));
+    std::size_t turned = 0;
+    for (std::size_t i = 1; i < soup.indices.size(); i += 3) turned += soup.indices[i] != shape.soup.indices[i] ? 1 : 0;
+    if (assembled->report.degenerate_faces == 0) CHECK(assembled->report.turned_faces == turned);
+  }
+}
+
+TEST_CASE("what winds alike is not turned, whichever way it looks, nor what is not allowed to be") {
+  for (const NamedShape& shape : all_shapes()) {
+    if (shape.name == "disagreeing pair") continue;
+    for (const double share : {0.0, 1.0}) {
+      INFO(shape.name << ", turned " << share);
+      const TriangleSoup soup = misturned(shape.soup, share, 1);
+      const auto assembled = assemble(soup, kTurning);
+      REQUIRE(assembled);
+      CHECK(assembled->report.turned_faces == 0);
+      CHECK(triangle_set(assembled->mesh) == triangle_set(mesh_of(soup)));
+    }
+    CHECK(assemble(misturned(shape.soup, 0.5, 1))->report.turned_faces == 0);
+  }
+  CHECK(assemble(disagreeing_pair(), kTurning)->report.turned_faces == 1);
+  CHECK(assemble(disagreeing_pair(), kTurning)->report.nonmanifold_edges == 0);
+}
+
+TEST_CASE("faces whose normals look where they do are not turned") {
+  TriangleSoup soup = faceted_sphere(2);
+  Attribute& normals = soup.attributes[0];
+  REQUIRE(normals.name == "NORMAL");
+  for (std::size_t t = 0; t < soup.indices.size(); t += 6) {  // every second face, its three points its own
+    std::swap(soup.indices[t + 1], soup.indices[t + 2]);
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < 3; ++i) {
+        float value = 0;
+        std::byte* const stored = &normals.data[12 * soup.indices[t + k] + 4 * i];
+        std::memcpy(&value, stored, 4);
+        value = -value;
+        std::memcpy(stored, &value, 4);
+      }
+  }
+  CHECK(assemble(soup, kTurning)->report.turned_faces == 0);
+}
+
+TEST_CASE("a surface of one side is cut across once, whatever the winding of its faces") {
+  for (const int width : {1, 2, 5})
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      INFO("width " << width << ", seed " << seed);
+      const TriangleSoup strip = mobius_strip(12 * width, width);
+      const auto assembled = assemble(misturned(strip, 0.5, seed), kTurning);
+      REQUIRE(assembled);
+      CHECK(validate(assembled->mesh));
+      CHECK(places_of(assembled->mesh) == places_of(mesh_of(strip)));
+      CHECK(assembled->report.nonmanifold_edges >= static_cast<std::size_t>(width));
+      CHECK(assembled->report.nonmanifold_edges <= static_cast<std::size_t>(5 * width));
+    }
+}
+
+TEST_CASE("pieces and sheets that meet at an edge are each turned to wind alike") {
+  const std::pair<const char*, TriangleSoup> shapes[] = {{"walled cube", walled_cube(6)},
+                                                         {"cubes at an edge", cubes_at_an_edge(4)},
+                                                         {"bow-tie", bow_tie()},
+                                                         {"spheres at a vertex", spheres_at_a_vertex(2)},
+                                                         {"many components", many_components(9)}};
+  for (const auto& [name, sound] : shapes) {
+    INFO(name);
+    const auto before = assemble(sound);
+    const auto after = assemble(misturned(sound, 0.5, 4), kTurning);
+    REQUIRE(before);
+    REQUIRE(after);
+    CHECK(after->report.nonmanifold_edges == before->report.nonmanifold_edges);
+    CHECK(after->mesh.vertex_count() == before->mesh.vertex_count());
+    CHECK(count_borders(after->mesh) == count_borders(before->mesh));
+  }
+}
+
+TEST_CASE("turning faces never makes more cuts, nor loses a face") {
+  for (std::uint64_t seed = 0; seed < (kReduced ? 20 : 200); ++seed) {
+    INFO("seed " << seed);
+    const TriangleSoup soup = random_squares(3, seed);
+    const auto given = assemble(soup);
+    const auto turned = assemble(soup, kTurning);
+    REQUIRE(turned);
+    CHECK(validate(turned->mesh));
+    CHECK(turned->report.nonmanifold_edges <= given->report.nonmanifold_edges);
+    CHECK(places_of(turned->mesh) == places_of(given->mesh));
   }
 }
 

@@ -209,6 +209,15 @@ TEST_CASE("gltf: transforms apply in order, mirrors turn the winding, the identi
   CHECK(cross(b - a, c - a).z > 0);
 }
 
+TEST_CASE("gltf: faces stay as they wind, since materials may show one side alone") {
+  Square square;
+  const std::uint16_t turned[] = {2, 0};  // of the indices 0 1 2 0 2 3 the first and third
+  std::memcpy(square.binary.data() + 48, &turned[0], 2);
+  std::memcpy(square.binary.data() + 52, &turned[1], 2);
+  CHECK(read(square).assembly.turned_faces == 0);
+  CHECK(read(square).assembly.nonmanifold_edges == 1);
+}
+
 TEST_CASE("gltf: strips and fans become triangles of one winding, points and lines a note") {
   Square square;
   square.primitive = R"("attributes":{"POSITION":0},"mode":6)";

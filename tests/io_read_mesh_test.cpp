@@ -424,6 +424,25 @@ TEST_CASE("stl: keywords in any case, loops of any size") {
   CHECK(surface_area(file.mesh) == Approx(1));
 }
 
+TEST_CASE("neighbours that wind otherwise are turned, unless the normals speak for both") {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  const std::string facets =
+      "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n"
+      "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid\n";
+  const std::string off = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 3 2\n";
+  for (const MeshFile& file : {read(square + "f 1 2 3\nf 1 4 3\n", "obj"), read(facets, "stl"), read(off, "off"),
+                               read(square + "vn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 4//1 3//1\n", "obj")}) {
+    CHECK(file.assembly.turned_faces == 1);
+    CHECK(file.assembly.nonmanifold_edges == 0);
+    CHECK(file.mesh.vertex_count() == 4);
+    CHECK(area_vector(file.mesh, 0).z > 0);
+    CHECK(area_vector(file.mesh, 1).z > 0);
+  }
+  const std::string two_sides = square + "vn 0 0 1\nvn 0 0 -1\nf 1//1 2//1 3//1\nf 1//2 4//2 3//2\n";
+  CHECK(read(two_sides, "obj").assembly.turned_faces == 0);
+  CHECK(read(two_sides, "obj").assembly.nonmanifold_edges == 1);
+}
+
 TEST_CASE("other formats go through assimp, unknown ones are named") {
   const MeshFile file = read("0 0 0 1 0 0 0 1 0\n0 0 0 0 1 0 0 0 1\n", "raw");
   CHECK(file.mesh.face_count() == 2);

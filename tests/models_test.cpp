@@ -78,6 +78,23 @@ TEST_CASE("a rod that is all slivers reaches every ratio") {
   CHECK(face_counts(result->mesh).front() <= 8);
 }
 
+TEST_CASE("a file of random winding has no cuts, and reaches every ratio") {
+  const auto path = model("field/oblong-shuffled.off");
+  LODESTONE_SKIP_UNLESS(path, "no models: set LODESTONE_DATA to their folder");
+  const auto file = read_mesh(*path);
+  REQUIRE(file);
+  CHECK(file->assembly.turned_faces > 0);
+  CHECK(file->assembly.nonmanifold_edges + file->assembly.cut_vertices == 0);
+  const auto result = simplify(file->mesh);
+  REQUIRE(result);
+  CHECK(face_counts(result->mesh).front() <= 8);
+  Cursor cursor(result->mesh);
+  cursor.seek(position_for_faces(result->mesh, 420));
+  const Mesh level = extract_level(result->mesh, cursor);
+  CHECK(level.face_count() == 420);
+  CHECK(measure_deviation(file->mesh, level).backward.mean < 2e-4 * bounding_box(file->mesh).diagonal());
+}
+
 TEST_CASE("a part from engineering, all needles, keeps to a hundredth of a percent at half of its faces") {
   const auto path = model("field/cad-part.obj");
   LODESTONE_SKIP_UNLESS(path, "no models: set LODESTONE_DATA to their folder");

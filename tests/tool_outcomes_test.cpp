@@ -29,7 +29,7 @@ constexpr Outcome kOutcomes[] = {
     {"nasty/hull-mask.obj", 0, 7980, ""},
     {"nasty/inf_nan.obj", 2, 0, "a corner is not finite"},
     {"nasty/joined_tetrahedra.obj", 0, 8, "3 vertices cut: several sheets met there"},
-    {"nasty/multibody.stl", 0, 32, "12 edges cut: not manifold"},
+    {"nasty/multibody.stl", 0, 32, "26 faces turned to wind as their neighbours do"},
     {"nasty/multiple_isolated_triangles.obj", 0, 5, ""},
     {"nasty/negative_indices.obj", 0, 12, ""},
     {"nasty/non_manifold_wrap.obj", 0, 12, "1 edge cut: not manifold"},

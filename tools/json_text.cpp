@@ -9,9 +9,10 @@ std::string json_text(const Json& json) {
 }
 
 Json assembly_json(const AssemblyReport& report) {
-  return {{"nonfinite_faces", report.nonfinite_faces},     {"degenerate_faces", report.degenerate_faces},
-          {"duplicate_faces", report.duplicate_faces},     {"unused_points", report.unused_points},
-          {"nonmanifold_edges", report.nonmanifold_edges}, {"cut_vertices", report.cut_vertices}};
+  return {{"nonfinite_faces", report.nonfinite_faces}, {"degenerate_faces", report.degenerate_faces},
+          {"duplicate_faces", report.duplicate_faces}, {"unused_points", report.unused_points},
+          {"turned_faces", report.turned_faces},       {"nonmanifold_edges", report.nonmanifold_edges},
+          {"cut_vertices", report.cut_vertices}};
 }
 
 Json one_sided_json(const OneSidedDeviation& deviation) {

@@ -35,6 +35,7 @@ std::vector<std::string> sentences(const AssemblyReport& report) {
       {report.degenerate_faces, "face", "faces", " left out: two corners at one position"},
       {report.duplicate_faces, "face", "faces", " left out: the same as another"},
       {report.unused_points, "point", "points", " left out: no face uses it"},
+      {report.turned_faces, "face", "faces", " turned to wind as their neighbours do"},
       {report.nonmanifold_edges, "edge", "edges", " cut: not manifold"},
       {report.cut_vertices, "vertex", "vertices", " cut: several sheets met there"},
   };

@@ -36,9 +36,10 @@ Deviation DeviationTotal::result() const {
 }
 
 AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b) {
-  return {a.nonfinite_faces + b.nonfinite_faces,     a.degenerate_faces + b.degenerate_faces,
-          a.duplicate_faces + b.duplicate_faces,     a.unused_points + b.unused_points,
-          a.nonmanifold_edges + b.nonmanifold_edges, a.cut_vertices + b.cut_vertices};
+  return {a.nonfinite_faces + b.nonfinite_faces, a.degenerate_faces + b.degenerate_faces,
+          a.duplicate_faces + b.duplicate_faces, a.unused_points + b.unused_points,
+          a.turned_faces + b.turned_faces,       a.nonmanifold_edges + b.nonmanifold_edges,
+          a.cut_vertices + b.cut_vertices};
 }
 
 BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b) {

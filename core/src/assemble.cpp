@@ -8,15 +8,20 @@
 #include <span>
 #include <string>
 
+#include "edges.h"
 #include "fans.h"
 #include "hash_index.h"
+#include "winding.h"
 
 namespace lodestone {
 namespace {
 
 using detail::cut_into_fans;
+using detail::HalfEdge;
 using detail::HashIndex;
+using detail::make_winding_coherent;
 using detail::mix_bits;
+using detail::sorted_edges;
 
 std::uint64_t position_hash(const Vec3f& p) {
   // Adding zero turns −0 into +0: the two are equal and have to hash alike.
@@ -191,7 +196,7 @@ Mesh number_by_first_use(const TriangleSoup& soup, const CleanFaces& faces, cons
 
 }  // namespace
 
-Result<AssembledMesh> assemble(const TriangleSoup& soup) {
+Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& options) {
   if (auto checked = check_lengths(soup); !checked) return tl::unexpected(checked.error());
   AssembledMesh result;
   AssemblyReport& report = result.report;
@@ -205,7 +210,10 @@ Result<AssembledMesh> assemble(const TriangleSoup& soup) {
   std::vector<bool> used(soup.positions.size(), false);
   for (const Index point : soup.indices) used[point] = true;
   report.unused_points = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
-  cut_into_fans(result.mesh, report);
+  std::vector<HalfEdge> halves = sorted_edges(result.mesh);
+  if (options.turn_faces) report.turned_faces = make_winding_coherent(result.mesh, halves);
+  if (report.turned_faces > 0) halves = sorted_edges(result.mesh);
+  cut_into_fans(result.mesh, halves, report);
   return result;
 }
 

@@ -22,42 +22,14 @@
 namespace lodestone::detail {
 namespace {
 
-// At an edge of more faces than these nobody drew sheets; all are cut apart.
-constexpr std::size_t kMostFacesAtEdge = 32;
-
-// Faces lie on one another at an edge where the cosine of the angle between them is larger.
-constexpr double kLayered = 0.99;
-
-/// A face's edge, named by the corner that it leaves.
-struct HalfEdge {
-  std::uint64_t key;  // both vertices, the smaller one in the high half
-  Index corner;
-  bool forward;  // from the smaller to the larger vertex
-};
-
-std::vector<HalfEdge> sorted_edges(const Mesh& mesh) {
-  std::vector<HalfEdge> edges(mesh.corner_wedge.size());
-  for (Index c = 0; c < edges.size(); ++c) {
-    const std::uint64_t a = mesh.corner_vertex(c);
-    const std::uint64_t b = mesh.corner_vertex(next_corner(c));
-    edges[c] = {a < b ? a << 32 | b : b << 32 | a, c, a < b};
-  }
-  std::sort(edges.begin(), edges.end(),
-            [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.corner < b.corner; });
-  return edges;
-}
-
 /// Finds out which two faces are neighbours in a sheet, at every edge. Two that lie back to back never are.
 class SheetFinder {
  public:
-  explicit SheetFinder(const Mesh& mesh);
+  SheetFinder(const Mesh& mesh, std::span<const HalfEdge> halves);
 
   std::size_t nonmanifold_edges() const { return nonmanifold_edges_; }
   /// The same edge in the neighbour, named by the corner that it leaves there; kNoIndex where there is none.
   Index across(Index corner) const { return across_[corner]; }
-  /// How two faces meet at an edge, named by a corner that it leaves in each: the cosine of the angle between them, −1
-  /// where they lie flat, 1 where one lies on the other.
-  double overlap(Index a, Index b) const;
   /// Whether several sheets lie at some edge of the vertex.
   bool is_layered(Index vertex) const { return layered_[vertex] != 0; }
   void cut(Index corner) { across_[std::exchange(across_[corner], kNoIndex)] = kNoIndex; }
@@ -76,7 +48,6 @@ class SheetFinder {
     auto clear_signs() const { return std::tie(materials_apart, wedges_apart, overlap); }
     auto order() const { return std::tie(materials_apart, wedges_apart, overlap, sheets_apart, rank_apart, a, b); }
   };
-  using Edge = std::span<const HalfEdge>;
 
   Index apex(Index corner) const { return mesh_.corner_vertex(previous_corner(corner)); }
   bool may_join(const HalfEdge& a, const HalfEdge& b) const {
@@ -99,21 +70,18 @@ class SheetFinder {
   std::size_t nonmanifold_edges_ = 0;
 };
 
-SheetFinder::SheetFinder(const Mesh& mesh)
+SheetFinder::SheetFinder(const Mesh& mesh, std::span<const HalfEdge> halves)
     : mesh_(mesh),
       across_(mesh.corner_wedge.size(), kNoIndex),
       layered_(mesh.vertex_count(), 0),
       sheets_(mesh.face_count()) {
-  const std::vector<HalfEdge> halves = sorted_edges(mesh);
   std::vector<Edge> crowded;
-  for (std::size_t i = 0, j = 0; i < halves.size(); i = j) {
-    while (j < halves.size() && halves[j].key == halves[i].key) ++j;
-    const Edge edge = std::span(halves).subspan(i, j - i);
+  for_each_edge(halves, [&](Edge edge) {
     const bool agree = edge.size() == 2 && edge[0].forward != edge[1].forward;
     if (edge.size() > 1 && !agree) ++nonmanifold_edges_;
     if (edge.size() == 2 && may_join(edge[0], edge[1])) join(edge[0].corner, edge[1].corner);
     if (edge.size() > 2 && edge.size() <= kMostFacesAtEdge) crowded.push_back(edge);
-  }
+  });
   std::erase_if(crowded, [&](Edge edge) { return !is_layered(edge); });
   for (const Edge edge : crowded)
     for (const Index c : {edge[0].corner, next_corner(edge[0].corner)}) layered_[mesh.corner_vertex(c)] = 1;
@@ -155,7 +123,7 @@ bool SheetFinder::lies_on(Index a, Index b) const {
       if (across_[c] != kNoIndex && apex(across_[c]) == vertex) return true;
     return false;
   };
-  return apex(a) == apex(b) || overlap(a, b) > kLayered || (has_beside(a, apex(b)) && has_beside(b, apex(a)));
+  return apex(a) == apex(b) || overlap(mesh_, a, b) > kLayered || (has_beside(a, apex(b)) && has_beside(b, apex(a)));
 }
 
 /// Whether some of an edge's faces lie on one another: several sheets do. Where none do, sheets end or cross at the
@@ -167,18 +135,6 @@ bool SheetFinder::is_layered(Edge edge) const {
   return false;
 }
 
-double SheetFinder::overlap(Index a, Index b) const {
-  // Both from one end of the edge: then faces that coincide have equal numbers, to the last bit.
-  const auto low_end = [&](Index c) { return std::min(mesh_.corner_vertex(c), mesh_.corner_vertex(next_corner(c))); };
-  const auto high_end = [&](Index c) { return std::max(mesh_.corner_vertex(c), mesh_.corner_vertex(next_corner(c))); };
-  const Vec3 from(mesh_.positions[low_end(a)]);
-  const Vec3 along = Vec3(mesh_.positions[high_end(a)]) - from;
-  const Vec3 normal_a = cross(along, Vec3(mesh_.positions[apex(a)]) - from);
-  const Vec3 normal_b = cross(along, Vec3(mesh_.positions[apex(b)]) - from);
-  const double lengths = length(normal_a) * length(normal_b);
-  return lengths > 0 ? dot(normal_a, normal_b) / lengths : 0;
-}
-
 SheetFinder::Match SheetFinder::match(Index a, Index b, int rank_apart) {
   const auto apart = [&](Index p, Index q) { return mesh_.corner_wedge[p] != mesh_.corner_wedge[q] ? 1 : 0; };
   Match match;
@@ -186,7 +142,7 @@ SheetFinder::Match SheetFinder::match(Index a, Index b, int rank_apart) {
   match.b = b;
   match.materials_apart = mesh_.material_of(face_of_corner(a)) != mesh_.material_of(face_of_corner(b)) ? 1 : 0;
   match.wedges_apart = apart(a, next_corner(b)) + apart(next_corner(a), b);
-  match.overlap = overlap(a, b);
+  match.overlap = overlap(mesh_, a, b);
   match.sheets_apart = sheets_.find(face_of_corner(a)) != sheets_.find(face_of_corner(b)) ? 1 : 0;
   match.rank_apart = rank_apart;
   return match;
@@ -295,8 +251,8 @@ std::size_t FanSimplifier::sharpest(std::size_t begin, std::size_t end) const {
   for (std::size_t spoke = begin; spoke < end; ++spoke) {
     const Index corner = fan_.corners[spoke];
     const Index across = sheets_.across(corner);
-    const double overlap = across == kNoIndex ? 1 : sheets_.overlap(corner, across);
-    if (overlap > largest) largest = overlap, best = spoke;
+    const double fold = across == kNoIndex ? 1 : overlap(mesh_, corner, across);
+    if (fold > largest) largest = fold, best = spoke;
   }
   return best;
 }
@@ -382,8 +338,8 @@ void copy_wedges(Mesh& mesh, UnionFind& fans, const std::vector<Index>& fan_vert
 
 }  // namespace
 
-void cut_into_fans(Mesh& mesh, AssemblyReport& report) {
-  SheetFinder sheets(mesh);
+void cut_into_fans(Mesh& mesh, std::span<const HalfEdge> halves, AssemblyReport& report) {
+  SheetFinder sheets(mesh, halves);
   FanSimplifier(mesh, sheets).run();
   report.nonmanifold_edges = sheets.nonmanifold_edges();
   UnionFind fans = fans_of(mesh, sheets);

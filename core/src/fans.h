@@ -1,7 +1,11 @@
 #pragma once
 
+#include <span>
+
 #include <lodestone/core/assemble.h>
 #include <lodestone/core/mesh.h>
+
+#include "edges.h"
 
 namespace lodestone::detail {
 
@@ -9,6 +13,7 @@ namespace lodestone::detail {
 ///
 /// A fan is what hangs together at a vertex: neighbouring faces of one sheet. Where several sheets share an edge, it
 /// finds out which faces belong together. No fan meets an edge or a position of its ring twice.
-void cut_into_fans(Mesh& mesh, AssemblyReport& report);
+/// Pre: `halves` are the mesh's sorted edges.
+void cut_into_fans(Mesh& mesh, std::span<const HalfEdge> halves, AssemblyReport& report);
 
 }  // namespace lodestone::detail

@@ -116,7 +116,8 @@ Result<MeshFile> detail::read_mesh_bytes(std::span<const std::byte> bytes, const
                                          const FileFetcher& fetch) {
   LODESTONE_TRY(SoupFile file, read_soup(bytes, extension, fetch));
   tidy_normals(file);
-  LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup));
+  // Which side a face shows is the material's matter in glTF alone.
+  LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup, {.turn_faces = !is_gltf(bytes, extension)}));
   if (auto note = coarse_floats(assembled.mesh)) file.notes.push_back(std::move(*note));
   return MeshFile{std::move(assembled.mesh), assembled.report, std::move(file.materials), std::move(file.images),
                   std::move(file.notes)};

@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include <lodestone/core/assemble.h>
+
 namespace lodestone::detail {
 namespace {
 
@@ -17,9 +19,6 @@ bool is_free(const Mesh& mesh, Index a, Index b) {
   return wedge[next_corner(a)] == wedge[previous_corner(b)] && wedge[previous_corner(a)] == wedge[next_corner(b)] &&
          mesh.material_of(face_of_corner(a)) == mesh.material_of(face_of_corner(b));
 }
-
-// At an edge of more faces than these nobody drew sheets; it is a line.
-constexpr std::size_t kMostFacesAtEdge = 32;
 
 /// Pairs each face on one side of an edge with a neighbour on the other. Leaves the edge as it is where there are no
 /// two sides, or some face has no neighbour: then it is a line of some sheet.

@@ -361,7 +361,9 @@ TriangleSoup faceted_cylinder(int m, int n) {
         add_point(soup, std::cos(angle), std::sin(angle), 2.0 * j / n);
         append_vector(normals, {std::cos(middle), std::sin(middle), 0});
       }
-    add_squares(soup, 1, n, [&](int k, int j) { return static_cast<Index>(first + 2 * static_cast<Index>(j) + static_cast<Index>(k)); });
+    add_squares(soup, 1, n, [&](int k, int j) {
+      return static_cast<Index>(first + 2 * static_cast<Index>(j) + static_cast<Index>(k));
+    });
   }
   soup.attributes = {float_attribute("NORMAL", 3, normals)};
   return soup;
@@ -569,6 +571,14 @@ TriangleSoup shuffled(const TriangleSoup& shape, std::uint64_t seed) {
     for (std::size_t k = 0; k < 3; ++k) std::swap(soup.indices[3 * (left - 1) + k], soup.indices[3 * other + k]);
     if (!soup.face_material.empty()) std::swap(soup.face_material[left - 1], soup.face_material[other]);
   }
+  return soup;
+}
+
+TriangleSoup misturned(const TriangleSoup& shape, double share, std::uint64_t seed) {
+  TriangleSoup soup = shape;
+  Random random(seed);
+  for (std::size_t t = 0; t < soup.indices.size(); t += 3)
+    if (random.unit() < share) std::swap(soup.indices[t + 1], soup.indices[t + 2]);
   return soup;
 }
 

@@ -98,6 +98,9 @@ TriangleSoup with_decal(const TriangleSoup& shape, double radius);
 /// The shape with its faces in another order.
 TriangleSoup shuffled(const TriangleSoup& shape, std::uint64_t seed);
 
+/// The shape with a share of its faces turned over; the attributes stay as they are.
+TriangleSoup misturned(const TriangleSoup& shape, double share, std::uint64_t seed);
+
 /// A shape with what is known of it.
 struct NamedShape {
   std::string name;

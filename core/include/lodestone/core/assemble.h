@@ -16,12 +16,22 @@ struct TriangleSoup {
   std::vector<Index> face_material;   ///< one per triangle, or empty
 };
 
+/// At an edge of more faces than these nobody drew sheets: all are cut apart.
+inline constexpr std::size_t kMostFacesAtEdge = 32;
+
+struct AssemblyOptions {
+  /// Whether faces may be turned so that neighbours wind alike. What cannot be seen from behind then looks another way:
+  /// for files whose winding means nothing.
+  bool turn_faces = false;
+};
+
 /// What `assemble` changed on the way from triangles to a manifold mesh; all zero for a clean file.
 struct AssemblyReport {
   std::size_t nonfinite_faces = 0;    ///< dropped: a corner is NaN or infinite
   std::size_t degenerate_faces = 0;   ///< dropped: two corners at one position
   std::size_t duplicate_faces = 0;    ///< dropped: corners, winding, material and attributes of an earlier one
   std::size_t unused_points = 0;      ///< dropped: no triangle uses them
+  std::size_t turned_faces = 0;       ///< turned to wind as their neighbours do, if allowed
   std::size_t nonmanifold_edges = 0;  ///< cut: more than two triangles, or two that disagree on winding
   std::size_t cut_vertices = 0;       ///< vertices that became several, one for each sheet
 };
@@ -39,8 +49,12 @@ struct AssembledMesh {
 /// and angles say. `Connectivity` recognises the copies of a vertex by their equal positions; they are removed together,
 /// so no crack opens.
 ///
+/// Where faces may be turned, all that two-face edges join winds alike afterwards, as far as a surface has two sides.
+/// Nothing is turned that winds alike already, nor against normals. Which side is the front normals say, where there are
+/// any; else nine tenths of the faces, or the shape, looking outwards, or most of the faces.
+///
 /// Pre: array lengths agree. Errors: InvalidArgument where an index or a length is out of range. Cost: O(n log n).
-Result<AssembledMesh> assemble(const TriangleSoup& soup);
+Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& options = {});
 
 /// Returns the soup with one point for each wedge: the inverse of `assemble`, up to order and what it dropped.
 TriangleSoup to_soup(const Mesh& mesh);
