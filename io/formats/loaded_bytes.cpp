@@ -1,0 +1,48 @@
+#include <set>
+#include <system_error>
+
+#include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
+#include <lodestone/io/read_mesh.h>
+
+#include "base/json.h"
+#include "gltf/gltf_container.h"
+#include "mesh/soup_file.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+/// Lists the files that a glTF names beside it.
+std::set<std::filesystem::path> files_beside(const Json& document) {
+  std::set<std::filesystem::path> files;
+  for (const char* array : {"buffers", "images"}) {
+    const Json* list = find_member(document, array);
+    if (list == nullptr || !list->is_array()) continue;
+    for (const Json& item : *list) {
+      const std::string uri = string_member(item, "uri");
+      if (uri.empty() || uri.starts_with("data:")) continue;
+      if (const auto path = uri_to_path(uri, array)) files.insert(path->lexically_normal());
+    }
+  }
+  return files;
+}
+
+}  // namespace
+
+Result<std::uint64_t> loaded_bytes(const std::filesystem::path& path) {
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  std::uint64_t total = bytes.size();
+  if (!is_gltf(bytes, extension_of(path))) return total;
+  LODESTONE_TRY(const GltfContainer container, split_container(bytes));
+  LODESTONE_TRY(const Json document, parse_json(container.json));
+  for (const std::filesystem::path& file : files_beside(document)) {
+    std::error_code missing;
+    const std::uintmax_t size = std::filesystem::file_size(path.parent_path() / file, missing);
+    if (!missing) total += size;
+  }
+  return total;
+}
+
+}  // namespace lodestone

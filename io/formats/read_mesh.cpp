@@ -1,0 +1,140 @@
+#include <lodestone/io/read_mesh.h>
+
+#include <algorithm>
+#include <cctype>
+#include <system_error>
+#include <utility>
+
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
+
+#include "base/bytes.h"
+#include "gltf/gltf_container.h"
+#include "mesh/float_spacing.h"
+#include "mesh/soup_file.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+enum class Format { Gltf, Obj, Off, Ply, Stl, Other };
+
+/// Nothing in a binary STL says what it is but that its size fits its count, 50 bytes for each triangle.
+bool has_size_of_stl(std::span<const std::byte> bytes) {
+  return bytes.size() > 84 && (bytes.size() - 84) / 50 == load_u32(bytes, 80) && (bytes.size() - 84) % 50 == 0;
+}
+
+/// Goes by content where that is certain, then by extension, then by what the text looks like.
+Format detect_format(std::span<const std::byte> bytes, std::string_view extension) {
+  const std::string_view start = without_byte_order_mark(as_text(bytes));
+  if (is_glb(bytes)) return Format::Gltf;
+  if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Format::Ply;
+  if (extension == "gltf" || extension == "glb") return Format::Gltf;
+  if (extension == "obj") return Format::Obj;
+  if (extension == "off") return Format::Off;
+  if (extension == "ply") return Format::Ply;
+  if (extension == "stl") return Format::Stl;
+  if (!extension.empty()) return Format::Other;
+  if (has_size_of_stl(bytes)) return Format::Stl;
+  if (start.starts_with("solid")) return Format::Stl;
+  if (start.starts_with("OFF")) return Format::Off;
+  const std::size_t first = start.find_first_not_of(" \t\r\n");
+  if (first != start.npos && start[first] == '{') return Format::Gltf;
+  return Format::Obj;
+}
+
+/// Text of two bytes a character begins with a mark, or has a zero among its first bytes.
+bool is_wide_text(std::span<const std::byte> bytes) {
+  const std::string_view start = as_text(bytes.first(std::min<std::size_t>(bytes.size(), 4)));
+  return start.starts_with("\xfe\xff") || start.starts_with("\xff\xfe") || start.find('\0') != start.npos;
+}
+
+Result<SoupFile> read_soup(std::span<const std::byte> bytes, const std::string& extension, const FileFetcher& fetch) {
+  const Format format = detect_format(bytes, extension);
+  const bool may_be_binary = is_glb(bytes) || format == Format::Stl || format == Format::Other;
+  if (!may_be_binary && is_wide_text(bytes))
+    return fail(ErrorCode::Unsupported, "the text is UTF-16 or UTF-32: save it as UTF-8");
+  switch (format) {
+    case Format::Gltf:
+      return read_gltf(bytes, fetch);
+    case Format::Obj:
+      return read_obj(bytes, fetch);
+    case Format::Off:
+      return read_off(bytes);
+    case Format::Ply:
+      return read_ply(bytes, fetch);
+    case Format::Stl:
+      return read_stl(bytes);
+    case Format::Other:
+      break;
+  }
+  return read_with_assimp(bytes, extension, fetch);
+}
+
+std::string lower(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+/// Returns the path with each part spelled as it is in the file system; the path itself where a part is not there.
+std::filesystem::path in_any_case(const std::filesystem::path& folder, const std::filesystem::path& relative) {
+  std::filesystem::path found = folder.empty() ? "." : folder;
+  for (const std::filesystem::path& part : relative) {
+    std::error_code error;
+    std::filesystem::path next = found / part;
+    if (!std::filesystem::exists(next, error))
+      for (std::filesystem::directory_iterator entry(found, error), end; !error && entry != end; entry.increment(error))
+        if (lower(entry->path().filename().string()) == lower(part.string())) next = entry->path();
+    found = std::move(next);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::string detail::extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  return lower(std::move(extension));
+}
+
+bool detail::is_gltf(std::span<const std::byte> bytes, std::string_view extension) {
+  return detect_format(bytes, extension) == Format::Gltf;
+}
+
+FileFetcher detail::files_beside(const std::filesystem::path& path) {
+  return [folder = path.parent_path()](const std::filesystem::path& relative) {
+    auto bytes = read_file(folder / relative);
+    return bytes ? std::move(bytes) : read_file(in_any_case(folder, relative));
+  };
+}
+
+Result<MeshFile> detail::read_mesh_bytes(std::span<const std::byte> bytes, const std::string& extension,
+                                         const FileFetcher& fetch) {
+  LODESTONE_TRY(SoupFile file, read_soup(bytes, extension, fetch));
+  tidy_normals(file);
+  // Which side a face shows is the material's matter in glTF alone.
+  LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup, {.turn_faces = !is_gltf(bytes, extension)}));
+  if (auto note = coarse_floats(assembled.mesh)) file.notes.push_back(std::move(*note));
+  return MeshFile{std::move(assembled.mesh), assembled.report, std::move(file.materials), std::move(file.images),
+                  std::move(file.notes)};
+}
+
+Result<MeshFile> read_mesh(const std::filesystem::path& path) {
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  auto file = detail::read_mesh_bytes(bytes, extension_of(path), files_beside(path));
+  if (!file) file.error().message = text('\'', path, "': ", file.error().message);
+  return file;
+}
+
+Result<MeshFile> read_mesh_bytes(std::span<const std::byte> bytes, const std::string& extension) {
+  return detail::read_mesh_bytes(
+      bytes, extension, [](const std::filesystem::path& relative) -> Result<std::vector<std::byte>> {
+        return fail(ErrorCode::Unreadable, text("'", relative, "' lies outside the bytes given"));
+      });
+}
+
+}  // namespace lodestone

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include <lodestone/core/result.h>
+
+#include "gltf/gltf_document.h"
+#include "mesh/soup_file.h"
+
+namespace lodestone::detail {
+
+/// Joins the scene's triangles in world space, at one level of detail (see collect_instances).
+///
+/// Attributes that every primitive has in the same layout are kept; NORMAL and TANGENT are floats and turn with their
+/// node. Faces of one document material share a number: material + 1, 0 for none. A mirrored node's faces change their
+/// winding. Notes say what was left out of the triangles read.
+Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level);
+
+/// Returns an error for an extension that the document requires and that we would misread it without.
+/// `understood` names one more that is no obstacle to the caller.
+Result<void> check_required_extensions(const GltfDocument& document, std::string_view understood = {});
+
+}  // namespace lodestone::detail

@@ -1,0 +1,168 @@
+#include "gltf/gltf_mesh_writer.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <meshoptimizer.h>
+
+#include "base/bytes.h"
+#include "gltf/gltf_attribute.h"
+
+namespace lodestone::detail {
+namespace {
+
+/// One element for each wedge, each on a multiple of 4 bytes as glTF demands of vertex data.
+std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_t element_bytes, std::size_t stride) {
+  const std::size_t count = packed.size() / element_bytes;
+  std::vector<std::byte> out(count * stride);
+  for (std::size_t i = 0; i < count; ++i)
+    std::copy_n(packed.begin() + i * element_bytes, element_bytes, out.begin() + i * stride);
+  return out;
+}
+
+/// Numbers the things that faces use, in order of first use.
+class Compaction {
+ public:
+  explicit Compaction(std::size_t count) : number_(count, kNoIndex) {}
+  Index add(Index thing) {
+    if (number_[thing] == kNoIndex) {
+      number_[thing] = static_cast<Index>(used_.size());
+      used_.push_back(thing);
+    }
+    return number_[thing];
+  }
+  std::span<const Index> used() const { return used_; }
+
+ private:
+  std::vector<Index> number_;
+  std::vector<Index> used_;
+};
+
+/// Copies the wedges of `mesh` to their new numbers in `out`; ~0 means that no face uses one.
+void renumber_wedges(const Mesh& mesh, std::span<const unsigned> new_number, std::size_t used, Mesh& out) {
+  out.wedge_vertex.resize(used);
+  for (std::size_t wedge = 0; wedge < new_number.size(); ++wedge)
+    if (new_number[wedge] != ~0u) out.wedge_vertex[new_number[wedge]] = mesh.wedge_vertex[wedge];
+  for (const Attribute& source : mesh.attributes) {
+    Attribute a{source.name, source.type, source.component_count, source.normalized, {}};
+    const std::size_t size = a.element_bytes();
+    a.data.resize(used * size);
+    for (std::size_t wedge = 0; wedge < new_number.size(); ++wedge)
+      if (new_number[wedge] != ~0u)
+        std::copy_n(source.data.begin() + wedge * size, size, a.data.begin() + new_number[wedge] * size);
+    out.attributes.push_back(std::move(a));
+  }
+  for (Index& wedge : out.corner_wedge) wedge = new_number[wedge];
+}
+
+}  // namespace
+
+std::vector<FacesOfMaterial> split_by_material(const Mesh& mesh) {
+  std::map<Index, FacesOfMaterial> groups;
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    const Index material = mesh.material_of(face);
+    FacesOfMaterial& group = groups[material];
+    group.material = material;
+    const auto first = mesh.corner_wedge.begin() + 3 * std::size_t{face};
+    group.corner_wedge.insert(group.corner_wedge.end(), first, first + 3);
+  }
+  std::vector<FacesOfMaterial> out;
+  for (auto& [material, group] : groups) out.push_back(std::move(group));
+  return out;
+}
+
+Mesh in_hardware_order(const Mesh& mesh) {
+  Mesh out;
+  out.positions = mesh.positions;
+  for (const FacesOfMaterial& group : split_by_material(mesh)) {
+    std::vector<unsigned> corners(group.corner_wedge.size());
+    meshopt_optimizeVertexCache(corners.data(), group.corner_wedge.data(), corners.size(), mesh.wedge_count());
+    out.corner_wedge.insert(out.corner_wedge.end(), corners.begin(), corners.end());
+    if (!mesh.face_material.empty())
+      out.face_material.insert(out.face_material.end(), corners.size() / 3, group.material);
+  }
+  std::vector<unsigned> new_number(mesh.wedge_count());
+  const std::size_t used = meshopt_optimizeVertexFetchRemap(new_number.data(), out.corner_wedge.data(),
+                                                            out.corner_wedge.size(), mesh.wedge_count());
+  renumber_wedges(mesh, new_number, used, out);
+  return out;
+}
+
+Mesh with_attributes(const Mesh& mesh, std::span<const Attribute* const> attributes) {
+  Mesh out{mesh.positions, mesh.wedge_vertex, mesh.corner_wedge, mesh.face_material, {}};
+  for (const Attribute* attribute : attributes) out.attributes.push_back(*attribute);
+  return out;
+}
+
+Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<const Attribute* const> attributes) {
+  Compaction wedges(mesh.wedge_count()), vertices(mesh.vertex_count());
+  Mesh out;
+  for (const Index wedge : corner_wedge) out.corner_wedge.push_back(wedges.add(wedge));
+  for (const Index wedge : wedges.used()) out.wedge_vertex.push_back(vertices.add(mesh.wedge_vertex[wedge]));
+  for (const Index vertex : vertices.used()) out.positions.push_back(mesh.positions[vertex]);
+  for (const Attribute* source : attributes) out.attributes.push_back(pick_elements(*source, wedges.used()));
+  return out;
+}
+
+std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh) {
+  std::vector<Vec3f> positions;
+  positions.reserve(mesh.wedge_count());
+  for (const Index vertex : mesh.wedge_vertex) positions.push_back(mesh.positions[vertex]);
+  const auto bytes = std::as_bytes(std::span(positions));
+  Json accessor = {{"bufferView", builder.add_view(bytes, ViewTarget::Vertices, sizeof(Vec3f))},
+                   {"componentType", static_cast<int>(ComponentType::Float32)},
+                   {"count", positions.size()},
+                   {"type", "VEC3"}};
+  set_bounds(accessor, bytes);
+  return builder.add("accessors", std::move(accessor));
+}
+
+std::size_t add_attribute(GlbBuilder& builder, const Attribute& attribute) {
+  const std::size_t size = attribute.element_bytes(), stride = (size + 3) / 4 * 4;
+  const std::size_t view = builder.add_view(with_stride(attribute.data, size, stride), ViewTarget::Vertices, stride);
+  Json accessor = {{"bufferView", view},
+                   {"componentType", static_cast<int>(attribute.type)},
+                   {"count", attribute.data.size() / size},
+                   {"type", gltf_type(attribute.component_count)}};
+  if (attribute.normalized && attribute.type != ComponentType::Float32) accessor["normalized"] = true;
+  return builder.add("accessors", std::move(accessor));
+}
+
+std::size_t add_indices(GlbBuilder& builder, std::span<const Index> indices, std::size_t point_count) {
+  const bool narrow = point_count <= 0xffff;  // The largest value of a type is not an index.
+  const std::vector<std::uint16_t> shorts(indices.begin(), narrow ? indices.end() : indices.begin());
+  const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
+  const std::size_t view = builder.add_view(bytes, ViewTarget::Indices);
+  return builder.add("accessors",
+                     {{"bufferView", view},
+                      {"componentType", static_cast<int>(narrow ? ComponentType::UInt16 : ComponentType::UInt32)},
+                      {"count", indices.size()},
+                      {"type", "SCALAR"}});
+}
+
+Json attribute_accessor(const AccessorData& data) {
+  Json accessor = {
+      {"componentType", static_cast<int>(data.type)}, {"count", data.count}, {"type", gltf_type(data.component_count)}};
+  if (data.normalized && data.type != ComponentType::Float32) accessor["normalized"] = true;
+  return accessor;
+}
+
+Json position_accessor(const AccessorData& data) {
+  Json accessor = attribute_accessor(data);
+  set_bounds(accessor, data.bytes);
+  return accessor;
+}
+
+void set_bounds(Json& accessor, std::span<const std::byte> positions) {
+  Vec3f low = load<Vec3f>(positions, 0), high = low;
+  for (std::size_t at = sizeof(Vec3f); at < positions.size(); at += sizeof(Vec3f)) {
+    const auto p = load<Vec3f>(positions, at);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  accessor["min"] = {low.x, low.y, low.z};
+  accessor["max"] = {high.x, high.y, high.z};
+}
+
+}  // namespace lodestone::detail

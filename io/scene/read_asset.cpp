@@ -1,0 +1,187 @@
+#include <lodestone/io/asset.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <lodestone/core/assemble.h>
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
+#include <lodestone/io/read_mesh.h>
+
+#include "gltf/gltf_flatten.h"
+#include "gltf/gltf_primitive.h"
+#include "gltf/gltf_scene.h"
+#include "scene/scene_mesh.h"
+#include "scene/stream_extension.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+Result<GltfDocument> read_document(std::span<const std::byte> bytes, const FileFetcher& fetch) {
+  LODESTONE_TRY(GltfDocument document, GltfDocument::parse(bytes, fetch));
+  LODESTONE_CHECK(check_required_extensions(document));
+  return document;
+}
+
+/// Adds up what the extras of many nodes say of one level.
+class LevelNumbers {
+ public:
+  /// `scale` and `area` of a node's mesh stand with all its levels; files of one mesh may lack them.
+  void add(const Json& node) {
+    const Json* extras = find_member(node, "extras");
+    const Json* numbers = extras != nullptr ? find_member(*extras, "lodestone") : nullptr;
+    if (numbers == nullptr) return;
+    const double scale = number_member(*numbers, "world_scale", 1), area = number_member(*numbers, "world_area", 1);
+    const double rms = number_member(*numbers, "rms_deviation", 0) * scale;
+    maximum_ = std::max(maximum_, number_member(*numbers, "maximum_deviation", 0) * scale);
+    curvature_error_ = std::max(curvature_error_, number_member(*numbers, "curvature_error", 0));
+    mean_ += number_member(*numbers, "mean_deviation", 0) * scale * area;
+    squares_ += rms * rms * area;
+    area_ += area;
+  }
+
+  void store(Asset::Level& level) const {
+    level.maximum_deviation = maximum_;
+    level.curvature_error = curvature_error_;
+    if (!(area_ > 0)) return;
+    level.mean_deviation = mean_ / area_;
+    level.rms_deviation = std::sqrt(squares_ / area_);
+  }
+
+ private:
+  double maximum_ = 0, curvature_error_ = 0;
+  double mean_ = 0, squares_ = 0, area_ = 0;
+};
+
+/// Returns the entry of MSFT_screencoverage on the finest node; 0 where there is none.
+double screen_coverage(const Json& finest, std::size_t level) {
+  const Json* extras = find_member(finest, "extras");
+  const Json* list = extras != nullptr ? find_member(*extras, "MSFT_screencoverage") : nullptr;
+  if (list == nullptr || !list->is_array() || level >= list->size() || !(*list)[level].is_number()) return 0;
+  return (*list)[level].get<double>();
+}
+
+/// Returns the bytes of the bufferViews that the meshes' geometry lies in, each view once.
+Result<std::uint64_t> stored_bytes(const GltfDocument& document, const std::set<std::size_t>& meshes) {
+  std::set<std::size_t> views;
+  for (const std::size_t mesh : meshes) {
+    LODESTONE_TRY(const auto of_mesh, geometry_views(document, mesh));
+    views.insert(of_mesh.begin(), of_mesh.end());
+  }
+  std::uint64_t bytes = 0;
+  for (const std::size_t view : views) {
+    LODESTONE_TRY(const Json* const json, document.element("bufferViews", "buffer view", view));
+    LODESTONE_TRY(const std::size_t size, size_member(*json, "byteLength", text("buffer view ", view)));
+    bytes += size;
+  }
+  return bytes;
+}
+
+using Chains = std::vector<std::vector<std::size_t>>;
+
+Result<void> read_numbers(const GltfDocument& document, std::size_t index, const Chains& chains, Asset::Level& level) {
+  LevelNumbers numbers;
+  for (const auto& chain : chains) {
+    LODESTONE_TRY(const Json* const node, document.element("nodes", "node", chain[std::min(index, chain.size() - 1)]));
+    numbers.add(*node);
+    LODESTONE_TRY(const Json* const finest, document.element("nodes", "node", chain[0]));
+    level.screen_coverage = std::max(level.screen_coverage, screen_coverage(*finest, index));
+  }
+  numbers.store(level);
+  return {};
+}
+
+Box box_of(const TriangleSoup& soup) {
+  Mesh points{soup.positions, {}, soup.indices, {}, {}};
+  points.wedge_vertex.resize(points.positions.size());
+  std::iota(points.wedge_vertex.begin(), points.wedge_vertex.end(), Index{0});
+  return bounding_box(points);
+}
+
+Result<std::uint64_t> count_vertices(const GltfDocument& document, std::span<const MeshInstance> instances) {
+  std::map<std::size_t, std::uint64_t> of_mesh;
+  std::uint64_t count = 0;
+  for (const MeshInstance& instance : instances) {
+    if (!of_mesh.contains(instance.mesh)) {
+      LODESTONE_TRY(const auto joined, join_primitives(document, instance.mesh));
+      of_mesh[instance.mesh] = joined ? joined->mesh.mesh.vertex_count() : 0;
+    }
+    count += of_mesh[instance.mesh];
+  }
+  return count;
+}
+
+Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, const Chains& chains, Box& box) {
+  Asset::Level level;
+  LODESTONE_TRY(const SoupFile file, flatten_scene(document, index));
+  if (index == 0) box = box_of(file.soup);
+  level.face_count = file.soup.indices.size() / 3;
+  LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup));
+  level.mesh = std::move(assembled.mesh);
+
+  LODESTONE_TRY(const auto instances, collect_instances(document, index));
+  std::set<std::size_t> meshes;
+  for (const MeshInstance& instance : instances) meshes.insert(instance.mesh);
+  LODESTONE_TRY(level.vertex_count, count_vertices(document, instances));
+  for (const std::size_t mesh : meshes) level.draco |= uses_draco(document, mesh);
+  LODESTONE_TRY(level.byte_length, stored_bytes(document, meshes));
+  LODESTONE_CHECK(read_numbers(document, index, chains, level));
+  return level;
+}
+
+Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document) {
+  std::vector<Asset::Stream> streams;
+  for (std::size_t i = 0; i < document.count("meshes"); ++i) {
+    LODESTONE_TRY(const Json* const mesh, document.element("meshes", "mesh", i));
+    const Json* extension = GltfDocument::extension(*mesh, kStreamExtension);
+    if (extension == nullptr) continue;
+    LODESTONE_TRY(const std::size_t view_index, size_member(*extension, "bufferView", kStreamExtension));
+    LODESTONE_TRY(const BufferView view, document.buffer_view(view_index));
+    streams.push_back({string_member(*mesh, "name"), {view.bytes.begin(), view.bytes.end()}});
+  }
+  return streams;
+}
+
+Error with_path(Error error, const std::filesystem::path& path) {
+  error.message = text('\'', path, "': ", error.message);
+  return error;
+}
+
+Result<Asset> read_asset_of(std::span<const std::byte> bytes, const FileFetcher& fetch) {
+  LODESTONE_TRY(const GltfDocument document, read_document(bytes, fetch));
+  LODESTONE_TRY(const std::size_t count, level_count(document));
+  LODESTONE_TRY(const auto chains, lod_chains(document));
+  Asset asset;
+  for (std::size_t i = 0; i < count; ++i) {
+    LODESTONE_TRY(Asset::Level level, read_level(document, i, chains, asset.box));
+    asset.levels.push_back(std::move(level));
+  }
+  LODESTONE_TRY(asset.streams, read_streams(document));
+  asset.total_bytes = bytes.size();
+  return asset;
+}
+
+}  // namespace
+
+Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
+  return read_asset_of(bytes, [](const std::filesystem::path& path) -> Result<std::vector<std::byte>> {
+    return fail(ErrorCode::Unsupported, text("'", path, "' is a file of its own, which bytes cannot reach"));
+  });
+}
+
+Result<Asset> read_asset(const std::filesystem::path& path) {
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  const auto fetch = [&](const std::filesystem::path& relative) { return read_file(path.parent_path() / relative); };
+  auto asset = read_asset_of(bytes, fetch);
+  if (!asset) return tl::unexpected<Error>(with_path(std::move(asset).error(), path));
+  LODESTONE_TRY(asset->total_bytes, loaded_bytes(path));
+  return asset;
+}
+
+}  // namespace lodestone

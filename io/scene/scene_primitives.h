@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/mesh.h>
+#include <lodestone/core/result.h>
+#include <lodestone/io/asset.h>
+
+#include "gltf/draco_encode.h"
+#include "gltf/glb_builder.h"
+#include "scene/scene_impl.h"
+
+namespace lodestone::detail {
+
+/// A level of a mesh, with the attributes its primitives are made of.
+struct LevelGeometry {
+  const Mesh* mesh = nullptr;
+  std::vector<const Attribute*> columns;                     ///< one for each of the source's columns
+  std::map<std::size_t, std::unique_ptr<Attribute>> mended;  ///< columns that are no longer the mesh's own
+};
+
+/// Finds the source's columns in a level. Errors: InvalidArgument where one is missing or the materials are no
+/// primitives of the source.
+Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source);
+
+/// The primitives of a level in the document, and what a client will get out of them.
+struct WrittenLevel {
+  Json primitives = Json::array();   ///< kept ones included; empty for a level that shows nothing
+  std::vector<std::size_t> sources;  ///< which primitive of the document's mesh each of them was
+  std::uint64_t face_count = 0;
+  std::uint64_t vertex_count = 0;
+  std::uint64_t byte_count = 0;            ///< of its geometry
+  std::uint64_t collapsed_face_count = 0;  ///< two of whose corners Draco's grid has put at one place
+  Mesh decoded;                    ///< as clients get it, with the source's columns; only where `measure` will see it
+  std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each
+};
+
+/// Writes a level's geometry and describes it by `source_mesh`, the mesh's object in the document: primitives keep
+/// their material, extensions and extras, those that are not replaced all they have.
+Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, const MeshSource& source,
+                                 const LevelGeometry& level, const QuantizationGrids& grids,
+                                 const AssetOptions& options);
+
+}  // namespace lodestone::detail

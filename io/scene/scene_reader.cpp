@@ -1,0 +1,164 @@
+#include <map>
+#include <set>
+
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
+#include <lodestone/io/scene.h>
+#include <lodestone/io/stream_format.h>
+#include <lodestone/lod/cursor.h>
+
+#include "gltf/gltf_flatten.h"
+#include "gltf/gltf_scene.h"
+#include "mesh/float_spacing.h"
+#include "scene/scene_images.h"
+#include "scene/scene_impl.h"
+#include "scene/scene_mesh.h"
+#include "scene/scene_places.h"
+#include "scene/scene_undo.h"
+#include "scene/stream_extension.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+Result<std::vector<std::byte>> nothing_beside(const std::filesystem::path& relative) {
+  return fail(ErrorCode::Unreadable, text("'", relative, "' lies outside the bytes given"));
+}
+
+Error with_path(Error error, const std::filesystem::path& path) {
+  error.message = text('\'', path, "': ", error.message);
+  return error;
+}
+
+Result<void> refuse_levels(const GltfDocument& document) {
+  LODESTONE_TRY(const auto chains, lod_chains(document));
+  if (chains.empty()) return {};
+  return fail(ErrorCode::Unsupported,
+              text("node ", chains[0][0], " already has levels of detail (MSFT_lod); build from the original"));
+}
+
+/// Returns the nodes that show each mesh in a scene.
+Result<std::map<std::size_t, std::vector<std::size_t>>> find_shown_meshes(const GltfDocument& document) {
+  std::map<std::size_t, std::vector<std::size_t>> nodes_of;
+  LODESTONE_TRY(const auto places, place_nodes(document));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    LODESTONE_TRY(const Json* const node, document.element("nodes", "node", i));
+    if (!places[i].shown || find_member(*node, "mesh") == nullptr) continue;
+    LODESTONE_TRY(const std::size_t mesh, size_member(*node, "mesh", text("node ", i)));
+    nodes_of[mesh].push_back(i);
+  }
+  return nodes_of;
+}
+
+Result<std::vector<std::byte>> read_stream(const GltfDocument& document, std::size_t mesh) {
+  LODESTONE_TRY(const Json* const json, document.element("meshes", "mesh", mesh));
+  const Json* extension = GltfDocument::extension(*json, kStreamExtension);
+  if (extension == nullptr) return std::vector<std::byte>{};
+  LODESTONE_TRY(const std::size_t view_index, size_member(*extension, "bufferView", kStreamExtension));
+  LODESTONE_TRY(const BufferView view, document.buffer_view(view_index));
+  return std::vector<std::byte>(view.bytes.begin(), view.bytes.end());
+}
+
+/// Reads a mesh's stream. What a grid left no area of the levels, the stream still has.
+Result<void> add_stream(const GltfDocument& document, std::size_t number, SceneMesh& mesh) {
+  LODESTONE_TRY(mesh.stream, read_stream(document, number));
+  if (mesh.stream.empty() || mesh.mesh.face_count() > 0) return {};
+  LODESTONE_TRY(const ProgressiveMesh whole, decode_stream(mesh.stream));
+  Cursor cursor(whole);
+  cursor.seek(static_cast<Index>(whole.record_count()));
+  mesh.mesh = extract_level(whole, cursor);
+  return {};
+}
+
+const char* why_empty(const GltfDocument& document) {
+  if (document.count("meshes") == 0) return "the file has no meshes";
+  if (document.count("nodes") == 0) return "the file has no nodes to show its meshes";
+  return "no node of a scene shows a mesh with triangles";
+}
+
+Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
+  LODESTONE_TRY(const auto nodes_of, find_shown_meshes(scene.document));
+  for (const auto& [number, nodes] : nodes_of) {
+    LODESTONE_TRY(auto joined, join_primitives(scene.document, number));
+    if (!joined) continue;
+    if (with_streams) LODESTONE_CHECK(add_stream(scene.document, number, joined->mesh));
+    if (joined->mesh.mesh.face_count() == 0) {
+      scene.dropped.push_back(joined->mesh.assembly);
+      continue;
+    }
+    joined->source.nodes = nodes;
+    for (const std::string& name : joined->left_out)
+      scene.notes.push_back(
+          text("mesh ", number, ": attribute ", name, " is left out: glTF vertices have no such type"));
+    if (const auto note = coarse_floats(joined->mesh.mesh)) scene.notes.push_back(text("mesh ", number, ": ", *note));
+    scene.meshes.push_back(std::move(joined->mesh));
+    scene.sources.push_back(std::move(joined->source));
+  }
+  if (scene.meshes.empty() && scene.dropped.empty()) scene.notes.push_back(why_empty(scene.document));
+  return measure_instances(scene);
+}
+
+enum class Levels { Refused, TakenOut };
+
+Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetcher& fetch_any, Levels levels,
+                              std::size_t level = 0) {
+  auto scene = std::make_shared<Scene::Impl>();
+  scene->in_metres = true;
+  const auto fetch = [&](const std::filesystem::path& relative) {
+    auto file = fetch_any(relative);
+    if (file) scene->files.push_back(relative);
+    return file;
+  };
+  LODESTONE_TRY(scene->document, GltfDocument::parse(bytes, fetch));
+  LODESTONE_CHECK(check_required_extensions(scene->document, "EXT_mesh_gpu_instancing"));
+  if (levels == Levels::Refused) {
+    LODESTONE_CHECK(refuse_levels(scene->document));
+  } else {
+    LODESTONE_CHECK(take_out_levels(*scene, level));
+  }
+  LODESTONE_CHECK(read_meshes(*scene, levels == Levels::TakenOut && level == 0));
+  scene->images = fetch_images(scene->document, fetch, scene->notes);
+  return Scene(std::move(scene));
+}
+
+}  // namespace
+
+Result<Scene> Scene::read(const std::filesystem::path& path) {
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  if (!is_gltf(bytes, extension_of(path))) {
+    auto file = detail::read_mesh_bytes(bytes, extension_of(path), files_beside(path));
+    if (!file) return tl::unexpected<Error>(with_path(std::move(file).error(), path));
+    return from_mesh(std::move(*file), path.stem().string());
+  }
+  return read_gltf_scene(bytes, files_beside(path), Levels::Refused).map_error([&](Error error) {
+    return with_path(std::move(error), path);
+  });
+}
+
+Result<Scene> Scene::read_bytes(std::span<const std::byte> bytes, const std::string& extension) {
+  if (is_gltf(bytes, extension)) return read_gltf_scene(bytes, nothing_beside, Levels::Refused);
+  LODESTONE_TRY(MeshFile file, read_mesh_bytes(bytes, extension));
+  return from_mesh(std::move(file), "mesh");
+}
+
+Result<Scene> Scene::read_multi_lod(const std::filesystem::path& path, std::size_t level) {
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  return read_gltf_scene(bytes, files_beside(path), Levels::TakenOut, level).map_error([&](Error error) {
+    return with_path(std::move(error), path);
+  });
+}
+
+Result<Scene> Scene::read_multi_lod_bytes(std::span<const std::byte> bytes, std::size_t level) {
+  return read_gltf_scene(bytes, nothing_beside, Levels::TakenOut, level);
+}
+
+const std::vector<SceneMesh>& Scene::meshes() const { return impl_->meshes; }
+const std::vector<AssemblyReport>& Scene::dropped() const { return impl_->dropped; }
+const std::vector<std::string>& Scene::notes() const { return impl_->notes; }
+const Box& Scene::box() const { return impl_->box; }
+bool Scene::in_metres() const { return impl_->in_metres; }
+const std::vector<std::filesystem::path>& Scene::files() const { return impl_->files; }
+
+}  // namespace lodestone

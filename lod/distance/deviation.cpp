@@ -1,0 +1,274 @@
+// Mean and root mean square by the samples of P. Cignoni, C. Rocchini, R. Scopigno, "Metro: measuring error on
+// simplified surfaces", Computer Graphics Forum 17(2), 1998: vertices, edges and faces, each sample counting once. How
+// many of each Metro would take is computed first; as many as are wanted are then taken, and weighted to count for as
+// many as Metro's. They are always the same: at equal steps of length and area, and within the faces by M. Roberts'
+// quasirandom sequence R2 ("The unreasonable effectiveness of quasirandom sequences", 2018). The maximum is not left to
+// the samples, see supremum.cpp.
+
+#include <lodestone/lod/deviation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "distance/coincident_faces.h"
+#include "distance/supremum.h"
+#include "distance/triangle.h"
+
+namespace lodestone {
+namespace {
+
+using detail::CoincidentFaces;
+using detail::Goal;
+using detail::PatchBound;
+using detail::SupremumSearch;
+using detail::SurfaceBounds;
+
+constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's default.
+constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
+constexpr double kLeastFaceShare = 0.125;
+
+/// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be
+/// 0.
+double add_up(std::vector<double>& sizes) {
+  double whole = 0;
+  for (double& size : sizes) size = whole += size;
+  if (whole > 0) return whole;
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = static_cast<double>(i + 1);
+  return whole;
+}
+
+/// Calls `visit(element, share, k)` for k = 0 … count − 1: the places at equal steps of the elements' sizes, whose
+/// running sums are `until`. `share` is how much of the element lies before the place.
+template <class Visit>
+void step_through(const std::vector<double>& until, std::size_t count, const Visit& visit) {
+  std::size_t element = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double place = (static_cast<double>(k) + 0.5) / static_cast<double>(count) * until.back();
+    while (element + 1 < until.size() && until[element] < place) ++element;
+    const double begin = element > 0 ? until[element - 1] : 0;
+    const double size = until[element] - begin;
+    visit(element, size > 0 ? std::clamp((place - begin) / size, 0.0, 1.0) : 0.5, k);
+  }
+}
+
+/// The vertices that faces use, the edges and the faces of a mesh, with points on each.
+class Samples {
+ public:
+  explicit Samples(const Mesh& mesh) : mesh_(mesh) {
+    find_vertices();
+    find_edges();
+    face_until_.resize(mesh.face_count());
+    for (Index f = 0; f < mesh.face_count(); ++f) face_until_[f] = 0.5 * length(area_vector(mesh, f));
+    area_ = add_up(face_until_);
+  }
+
+  /// How many samples Metro takes of each kind when asked for `count`.
+  struct Counts {
+    double vertices = 0, edges = 0, faces = 0;
+  };
+  Counts metros_counts(double count) const {
+    Counts result;
+    result.vertices = static_cast<double>(vertices_.size());
+    const double rest = std::max(count - result.vertices, 0.0);
+    const double samples_per_length = std::sqrt(rest / area_);
+    result.edges = area_ > 0 ? std::min(length_ * samples_per_length, rest) : rest;
+    result.faces = rest - result.edges;
+    return result;
+  }
+
+  /// Each calls `visit(point, face)`, with a face that the point is on, for `count` samples spread evenly.
+  template <class Visit>
+  void for_vertices(std::size_t count, const Visit& visit) const {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Index corner = vertices_[(2 * k + 1) * vertices_.size() / (2 * count)];
+      visit(mesh_.corner_position(corner), face_of_corner(corner));
+    }
+  }
+  template <class Visit>
+  void for_edges(std::size_t count, const Visit& visit) const {
+    step_through(edge_until_, count, [&](std::size_t edge, double share, std::size_t) {
+      const Index corner = edges_[edge];
+      const Vec3 a = mesh_.corner_position(corner);
+      visit(a + (mesh_.corner_position(next_corner(corner)) - a) * share, face_of_corner(corner));
+    });
+  }
+  template <class Visit>
+  void for_faces(std::size_t count, const Visit& visit) const {
+    step_through(face_until_, count, [&](std::size_t face, double, std::size_t k) {
+      visit(point_on_face(mesh_, static_cast<Index>(face), k), static_cast<Index>(face));
+    });
+  }
+
+  std::size_t vertex_count() const { return vertices_.size(); }
+
+ private:
+  void find_vertices() {
+    std::vector<bool> found(mesh_.vertex_count());
+    for (Index corner = 0; corner < mesh_.corner_wedge.size(); ++corner) {
+      const Index v = mesh_.corner_vertex(corner);
+      if (!found[v]) vertices_.push_back(corner);
+      found[v] = true;
+    }
+  }
+
+  /// Each edge once, however many faces it has, in the order of the faces.
+  void find_edges() {
+    struct Edge {
+      Index low, high, corner;
+    };
+    std::vector<Edge> edges(mesh_.corner_wedge.size());
+    for (Index corner = 0; corner < edges.size(); ++corner) {
+      const auto [low, high] = std::minmax({mesh_.corner_vertex(corner), mesh_.corner_vertex(next_corner(corner))});
+      edges[corner] = {low, high, corner};
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+      return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+    });
+    const auto same = [](const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; };
+    edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
+    for (const Edge& edge : edges) edges_.push_back(edge.corner);
+    std::sort(edges_.begin(), edges_.end());
+    for (const Index corner : edges_) {
+      edge_until_.push_back(length(mesh_.corner_position(next_corner(corner)) - mesh_.corner_position(corner)));
+    }
+    length_ = add_up(edge_until_);
+  }
+
+  const Mesh& mesh_;
+  std::vector<Index> vertices_;     // A corner at each.
+  std::vector<Index> edges_;        // The first corner on each.
+  std::vector<double> edge_until_;  // Running sums of lengths.
+  std::vector<double> face_until_;  // Running sums of areas.
+  double length_ = 0;
+  double area_ = 0;
+};
+
+/// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
+class Tally {
+ public:
+  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, CoincidentFaces* to_faces = nullptr)
+      : from_(from), to_(to), to_index_(to_index), to_faces_(to_faces) {}
+
+  void operator()(const Vec3& point, Index face) {
+    const SurfaceIndex::Hit hit = to_index_.nearest(point, detail::kUnbounded, hint_);
+    hint_ = hit.face;
+    ++count_;
+    sum_ += hit.distance;
+    squares_ += hit.distance * hit.distance;
+    if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_, face), to_faces_->as_near_as(hit));
+  }
+
+  std::size_t count() const { return count_; }
+  double mean() const { return over_count(sum_); }
+  double mean_square() const { return over_count(squares_); }
+  double mean_angle() const { return over_count(angles_); }
+
+ private:
+  double least_angle(const Vec3& normal, std::span<const Index> faces) const {
+    double least = std::numbers::pi;
+    for (const Index face : faces) least = std::min(least, angle_between(normal, area_vector(to_, face)));
+    return least;
+  }
+  double over_count(double x) const { return x / static_cast<double>(std::max<std::size_t>(count_, 1)); }
+
+  const Mesh& from_;
+  const Mesh& to_;
+  const SurfaceIndex& to_index_;
+  CoincidentFaces* to_faces_;
+  Index hint_ = kNoIndex;
+  std::size_t count_ = 0;
+  double sum_ = 0, squares_ = 0, angles_ = 0;
+};
+
+/// Fills in mean and rms, and returns the mean angle between the normals at the faces' samples and at their nearest
+/// points.
+double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, std::size_t sample_count,
+                     OneSidedDeviation& result) {
+  const std::size_t face_count = std::max(from.face_count(), to.face_count());
+  const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
+  const Samples samples(from);
+  const Samples::Counts weights = samples.metros_counts(metros_count);
+  const auto taken = [&](double weight) {
+    return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
+  };
+  CoincidentFaces to_faces(to, to_index);
+  Tally vertices(from, to, to_index), edges(from, to, to_index), faces(from, to, to_index, &to_faces);
+  samples.for_vertices(std::min(samples.vertex_count(), taken(weights.vertices)), std::ref(vertices));
+  samples.for_edges(taken(weights.edges), std::ref(edges));
+  // The angle needs a fair number in faces, even where few or none of Metro's are.
+  samples.for_faces(taken(std::max(weights.faces, kLeastFaceShare * metros_count)), std::ref(faces));
+
+  const auto combine = [&](double vertex_mean, double edge_mean, double face_mean) {
+    return (weights.vertices * vertex_mean + weights.edges * edge_mean + weights.faces * face_mean) /
+           (weights.vertices + weights.edges + weights.faces);
+  };
+  result.mean = combine(vertices.mean(), edges.mean(), faces.mean());
+  result.rms = std::sqrt(combine(vertices.mean_square(), edges.mean_square(), faces.mean_square()));
+  result.sample_count = vertices.count() + edges.count() + faces.count();
+  return faces.mean_angle();
+}
+
+/// Narrows one direction's maximum on its own; leaves mean and rms as they are.
+void narrow_maximum(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, const DeviationOptions& options,
+                    Goal goal, OneSidedDeviation& result) {
+  SurfaceBounds bounds(from, false);
+  PatchBound to_patch(to);
+  SupremumSearch search(from, to_index, to_patch, bounds);
+  search.visit_vertices(goal);
+  search.split_faces(goal, options.budget);
+  const OneSidedDeviation narrowed = search.result();
+  result.maximum = narrowed.maximum;
+  result.maximum_bound = narrowed.maximum_bound;
+}
+
+double larger_diagonal(const Mesh& a, const Mesh& b) {
+  return std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
+}
+
+/// The deviation where a mesh has no faces: the means are as the maximum.
+Deviation deviation_of_empty(const Mesh& a, const Mesh& b) {
+  Deviation result = detail::maximum_of_empty(a, b);
+  result.forward.mean = result.forward.rms = result.forward.maximum;
+  result.backward.mean = result.backward.rms = result.backward.maximum;
+  return result;
+}
+
+}  // namespace
+
+Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k) {
+  return detail::point_on_triangle(mesh.corner_position(3 * face), mesh.corner_position(3 * face + 1),
+                                   mesh.corner_position(3 * face + 2), k);
+}
+
+Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options) {
+  if (a.face_count() == 0 || b.face_count() == 0) return deviation_of_empty(a, b);
+  const SurfaceIndex a_index(a);
+  const SurfaceIndex b_index(b);
+  const Goal goal = detail::goal_of(options, larger_diagonal(a, b), 0);
+  Deviation result;
+  result.mean_normal_angle = measure_means(a, b, b_index, options.sample_count, result.forward);
+  measure_means(b, a, a_index, options.sample_count, result.backward);
+  narrow_maximum(a, b, b_index, options, goal, result.forward);
+  narrow_maximum(b, a, a_index, options, goal, result.backward);
+  return result;
+}
+
+Deviation measure_maximum(const Mesh& a, const SurfaceIndex& a_index, const Mesh& b, const DeviationOptions& options,
+                          double enough) {
+  if (a.face_count() == 0 || b.face_count() == 0) return detail::maximum_of_empty(a, b);
+  const SurfaceIndex b_index(b);
+  SurfaceBounds a_bounds(a, false), b_bounds(b, false);
+  PatchBound a_patch(a), b_patch(b);
+  SupremumSearch forward(a, b_index, b_patch, a_bounds);
+  SupremumSearch backward(b, a_index, a_patch, b_bounds);
+  return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a, b), enough),
+                             options.budget);
+}
+
+}  // namespace lodestone

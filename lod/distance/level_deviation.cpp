@@ -1,0 +1,250 @@
+// Branch and bound over both surfaces (see supremum.cpp), with bounds that outlive a level. Backward, from the level to
+// the original, a face's bound stays true for as long as the face exists, since the original does not change. Forward,
+// a vertex of the original keeps the face it was near until a removal takes that face away; then its distance is at
+// most the old one and what the surface moved.
+
+#include <lodestone/lod/level_deviation.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "distance/supremum.h"
+#include "distance/triangle.h"
+#include "distance/triple_table.h"
+
+namespace lodestone {
+namespace {
+
+using detail::Anchor;
+using detail::Goal;
+using detail::PatchBound;
+using detail::SupremumSearch;
+using detail::SurfaceBounds;
+using detail::Triangle;
+using detail::Triple;
+using detail::TripleTable;
+using detail::Witnesses;
+
+Triple bits_of(const Vec3f& p) {
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0f); };  // The sum makes −0 equal to 0.
+  return {bits(p.x), bits(p.y), bits(p.z)};
+}
+
+/// Finds the original's vertices by their positions.
+class VertexFinder {
+ public:
+  explicit VertexFinder(const Mesh& original) : vertex_at_(original.vertex_count()) {
+    for (Index v = 0; v < original.vertex_count(); ++v) vertex_at_.insert(bits_of(original.positions[v]), v);
+  }
+
+  /// Returns the original's vertex at each vertex of `mesh`, the first where several are; kNoIndex where none is.
+  std::vector<Index> find_all(const Mesh& mesh) const {
+    std::vector<Index> found(mesh.vertex_count());
+    for (Index v = 0; v < found.size(); ++v) found[v] = vertex_at_.find(bits_of(mesh.positions[v]));
+    return found;
+  }
+
+ private:
+  TripleTable vertex_at_;
+};
+
+/// What names a face of the original and of its levels alike: its corners in the original's vertices, ascending.
+Triple face_name(const Mesh& mesh, const std::vector<Index>& vertex_names, Index face) {
+  Triple name;
+  for (Index i = 0; i < 3; ++i) name[i] = vertex_names[mesh.corner_vertex(3 * face + i)];
+  std::sort(name.begin(), name.end());
+  return name;
+}
+
+/// Whether all corners are vertices of the original.
+bool is_known(const Triple& name) { return name[2] != kNoIndex; }
+
+}  // namespace
+
+struct LevelDeviation::Impl {
+  Impl(const Mesh& mesh, const DeviationOptions& options_);
+
+  Deviation measure(const Mesh& level, double moved, double enough);
+  void forget();
+  SurfaceBounds inherit(const Mesh& level, double moved);
+  void carry_anchors(const std::vector<Index>& face_now, double moved);
+  void carry_bounds(const std::vector<Index>& face_now, double moved);
+  void anchor_common_vertices(const Mesh& level, const std::vector<Index>& names, SurfaceBounds& backward);
+  void bound_new_faces(const Mesh& level, const Goal& goal, SurfaceBounds& backward);
+  void anchor_at(Index vertex, const Triangle& triangle, Index face);
+  void start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const;
+
+  const Mesh& original;
+  DeviationOptions options;
+  double diagonal;  // The original's.
+  SurfaceIndex index;
+  PatchBound patch;
+  VertexFinder vertices;
+  TripleTable original_faces;
+  std::vector<Index> face_at;  // A face at each of the original's vertices, by name; kNoIndex: none.
+  SurfaceBounds forward;       // Of the original, to the last level.
+
+  TripleTable level_faces;           // Of the last level.
+  std::vector<double> level_bounds;  // Of the last level's faces, to the original.
+  Vec3 farthest_point;               // Of the original, from the last level.
+  Index farthest_face = kNoIndex;    // Of the level, from the original; as numbered now.
+  double farthest_distance = 0;      // Of farthest_face.
+};
+
+LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
+    : original(mesh),
+      options(options_),
+      diagonal(bounding_box(mesh).diagonal()),
+      index(mesh),
+      patch(mesh),
+      vertices(mesh),
+      original_faces(mesh.face_count()),
+      face_at(mesh.vertex_count(), kNoIndex),
+      forward(mesh, true) {
+  const std::vector<Index> vertex_names = vertices.find_all(mesh);
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    const Triple name = face_name(mesh, vertex_names, f);
+    original_faces.insert(name, f);
+    for (const Index v : name) {
+      if (face_at[v] == kNoIndex) face_at[v] = f;
+    }
+  }
+  if (mesh.face_count() > 0) farthest_point = mesh.corner_position(0);
+}
+
+/// Carries what is known over to a new level; returns what is known of the level's own faces.
+SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
+  const std::vector<Index> vertex_names = vertices.find_all(level);
+  SurfaceBounds backward(level, false);
+  TripleTable faces_now(level.face_count());
+  std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.
+  std::vector<Index> same_face(level.face_count(), kNoIndex);  // The original's face for each of the level's.
+  for (Index f = 0; f < level.face_count(); ++f) {
+    const Triple name = face_name(level, vertex_names, f);
+    if (!is_known(name)) continue;
+    faces_now.insert(name, f);
+    if (const Index before = level_faces.find(name); before != kNoIndex) {
+      face_now[before] = f;
+      backward.faces[f] = level_bounds[before];
+    }
+    same_face[f] = original_faces.find(name);
+  }
+  carry_anchors(face_now, moved);
+  carry_bounds(face_now, moved);
+  for (Index f = 0; f < level.face_count(); ++f) {
+    if (same_face[f] == kNoIndex) continue;
+    backward.faces[f] = 0;
+    forward.lower(same_face[f], 0, std::array{f});
+  }
+  anchor_common_vertices(level, vertex_names, backward);
+  level_faces = std::move(faces_now);
+  if (farthest_face != kNoIndex) farthest_face = face_now[farthest_face];
+  return backward;
+}
+
+void LevelDeviation::Impl::carry_anchors(const std::vector<Index>& face_now, double moved) {
+  for (Anchor& anchor : forward.vertices) {
+    anchor.exact = false;
+    if (anchor.face != kNoIndex) anchor.face = face_now[anchor.face];
+    if (anchor.face == kNoIndex) anchor.distance += moved;
+  }
+}
+
+void LevelDeviation::Impl::carry_bounds(const std::vector<Index>& face_now, double moved) {
+  for (std::size_t f = 0; f < forward.faces.size(); ++f) {
+    Witnesses& witness = forward.witnesses[f];
+    if (witness.known()) {
+      for (Index& face : witness.faces) face = face_now[face];
+    }
+    if (std::find(witness.faces.begin(), witness.faces.end(), kNoIndex) == witness.faces.end()) continue;
+    witness = {};
+    forward.faces[f] += moved;
+  }
+}
+
+/// Where the level kept a vertex, the surfaces meet.
+void LevelDeviation::Impl::anchor_common_vertices(const Mesh& level, const std::vector<Index>& vertex_names,
+                                                  SurfaceBounds& backward) {
+  for (Index corner = 0; corner < level.corner_wedge.size(); ++corner) {
+    const Index v = level.corner_vertex(corner);
+    const Index name = vertex_names[v];
+    if (name == kNoIndex || face_at[name] == kNoIndex) continue;
+    forward.vertices[name] = {0, face_of_corner(corner), true};
+    backward.vertices[v] = {0, face_at[name], true};
+  }
+}
+
+/// Bounds the level's new faces by the patches of the original they stand for, and takes those patches' vertices, which
+/// have lost the faces they were near, as near the new ones.
+void LevelDeviation::Impl::bound_new_faces(const Mesh& level, const Goal& goal, SurfaceBounds& backward) {
+  std::vector<bool> lost(forward.vertices.size());
+  for (std::size_t v = 0; v < lost.size(); ++v) lost[v] = forward.vertices[v].face == kNoIndex;
+  for (Index f = 0; f < level.face_count(); ++f) {
+    const Index start = backward.vertices[level.corner_vertex(3 * f)].face;
+    if (backward.faces[f] <= goal.threshold() || start == kNoIndex) continue;
+    const Triangle triangle = detail::triangle_of(level, f);
+    backward.faces[f] = patch.bound({Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)}, start, goal.threshold(),
+                                    goal.patch_slack());
+    for (const Index g : patch.patch()) {
+      for (Index corner = 3 * g; corner < 3 * g + 3; ++corner) {
+        const Index v = original.corner_vertex(corner);
+        if (lost[v] && forward.vertices[v].face != f) anchor_at(v, triangle, f);
+      }
+    }
+  }
+}
+
+void LevelDeviation::Impl::anchor_at(Index vertex, const Triangle& triangle, Index face) {
+  Anchor& anchor = forward.vertices[vertex];
+  const Vec3 p(original.positions[vertex]);
+  const double distance = length(p - detail::nearest_on_triangle(p, triangle));
+  if (anchor.face == kNoIndex || distance < anchor.distance) anchor = {distance, face, false};
+}
+
+/// Raises the goal at once to where the last level's maximum suggests.
+void LevelDeviation::Impl::start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const {
+  forward_search.probe(farthest_point, goal);
+  if (farthest_face != kNoIndex) backward_search.assume(farthest_face, farthest_distance, goal);
+}
+
+Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double enough) {
+  const SurfaceIndex level_index(level);
+  SurfaceBounds backward = inherit(level, moved);
+  PatchBound level_patch(level);
+  SupremumSearch forward_search(original, level_index, level_patch, forward);
+  SupremumSearch backward_search(level, index, patch, backward);
+  Goal goal = detail::goal_of(options, std::max(diagonal, bounding_box(level).diagonal()), enough);
+  start(forward_search, backward_search, goal);
+  bound_new_faces(level, goal, backward);
+  const Deviation result = detail::narrow_both(forward_search, backward_search, goal, options.budget);
+  if (forward_search.largest_distance() > 0) farthest_point = forward_search.farthest_point();
+  farthest_face = backward_search.farthest_face();
+  farthest_distance = backward_search.largest_distance();
+  level_bounds = std::move(backward.faces);
+  return result;
+}
+
+void LevelDeviation::Impl::forget() {
+  forward = SurfaceBounds(original, true);
+  level_faces = TripleTable();
+  level_bounds.clear();
+  farthest_face = kNoIndex;
+}
+
+LevelDeviation::LevelDeviation(const Mesh& original, const DeviationOptions& options)
+    : impl_(std::make_unique<Impl>(original, options)) {}
+LevelDeviation::~LevelDeviation() = default;
+LevelDeviation::LevelDeviation(LevelDeviation&&) noexcept = default;
+LevelDeviation& LevelDeviation::operator=(LevelDeviation&&) noexcept = default;
+
+Deviation LevelDeviation::measure(const Mesh& level, double moved, double enough) {
+  if (impl_->original.face_count() == 0 || level.face_count() == 0) {
+    impl_->forget();
+    return detail::maximum_of_empty(impl_->original, level);
+  }
+  return impl_->measure(level, moved, enough);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,229 @@
+// The degree of a map as a proof of coverage: see for instance J. Milnor, "Topology from the Differentiable Viewpoint",
+// 1965, section 5. The degree of the patch's projection is constant where its outline does not go, and it is the
+// winding number of the outline there.
+
+#include "distance/patch_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lodestone::detail {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// Twice the signed area of p, q, r.
+template <class Point>
+double area2(const Point& p, const Point& q, const Point& r) {
+  return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+}
+
+/// The half-edges of a mesh by the vertex they leave.
+class HalfEdges {
+ public:
+  explicit HalfEdges(const Mesh& mesh) : begin_(mesh.vertex_count() + 1, 0), edges_(mesh.corner_wedge.size()) {
+    const Index count = static_cast<Index>(mesh.corner_wedge.size());
+    for (Index c = 0; c < count; ++c) ++begin_[mesh.corner_vertex(c)];
+    Index sum = 0;
+    for (Index& b : begin_) b = sum += b;
+    // Filling from the back turns the ends into the beginnings.
+    for (Index c = count; c-- > 0;) {
+      edges_[--begin_[mesh.corner_vertex(c)]] = {mesh.corner_vertex(next_corner(c)), c};
+    }
+  }
+
+  /// The corner of the half-edge from u to v; kNoIndex where there are none or several.
+  Index only_corner(Index u, Index v) const {
+    Index found = kNoIndex;
+    for (Index i = begin_[u]; i < begin_[u + 1]; ++i) {
+      if (edges_[i].to != v) continue;
+      if (found != kNoIndex) return kNoIndex;
+      found = edges_[i].corner;
+    }
+    return found;
+  }
+
+ private:
+  struct HalfEdge {
+    Index to;
+    Index corner;
+  };
+  std::vector<Index> begin_;
+  std::vector<HalfEdge> edges_;
+};
+
+}  // namespace
+
+std::vector<Index> opposite_corners(const Mesh& mesh) {
+  const HalfEdges half_edges(mesh);
+  std::vector<Index> opposite(mesh.corner_wedge.size());
+  for (Index c = 0; c < opposite.size(); ++c) {
+    const Index u = mesh.corner_vertex(c);
+    const Index v = mesh.corner_vertex(next_corner(c));
+    // Both ways, so that the relation is symmetric: the outline of a patch is counted from both of its sides.
+    opposite[c] = half_edges.only_corner(u, v) == c ? half_edges.only_corner(v, u) : kNoIndex;
+  }
+  return opposite;
+}
+
+PatchBound::PatchBound(const Mesh& surface)
+    : surface_(surface), opposite_(opposite_corners(surface)), state_(surface.face_count(), 0) {}
+
+PatchBound::Point PatchBound::Frame::project(const Vec3& p) const {
+  const Vec3 d = p - origin;
+  return {dot(d, x_axis), dot(d, y_axis), dot(d, normal)};
+}
+
+/// Sets up the plane of a triangle; false where it has none.
+bool PatchBound::make_frame(const std::array<Vec3, 3>& triangle, double slack, Frame& frame) {
+  const Vec3 centre = (triangle[0] + triangle[1] + triangle[2]) * (1.0 / 3.0);
+  frame.origin = centre;
+  frame.normal = normalized(cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+  frame.x_axis = normalized(triangle[1] - triangle[0]);
+  frame.y_axis = cross(frame.normal, frame.x_axis);
+  double radius = 0;
+  for (const Vec3& corner : triangle) radius = std::max(radius, length(corner - centre));
+  if (!(squared_length(frame.normal) > 0) || !(radius > slack)) return false;
+  const double shrink = 1 - slack / radius;
+  for (std::size_t i = 0; i < 3; ++i) frame.corners[i] = frame.project(centre + (triangle[i] - centre) * shrink);
+  return true;
+}
+
+/// Whether a line along an edge of `other` or of `triangle` keeps the two apart; `triangle` winds counter-clockwise.
+bool PatchBound::separated(const Points& triangle, const Points& other) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point& p = triangle[i];
+    const Point& q = triangle[(i + 1) % 3];
+    if (area2(p, q, other[0]) <= 0 && area2(p, q, other[1]) <= 0 && area2(p, q, other[2]) <= 0) return true;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point& p = other[i];
+    const Point& q = other[(i + 1) % 3];
+    if (p.x == q.x && p.y == q.y) continue;  // No line: a border edge comes as a triangle of two points.
+    const double inner = area2(p, q, other[(i + 2) % 3]);
+    const double a = area2(p, q, triangle[0]);
+    const double b = area2(p, q, triangle[1]);
+    const double c = area2(p, q, triangle[2]);
+    if ((inner >= 0 && a <= 0 && b <= 0 && c <= 0) || (inner <= 0 && a >= 0 && b >= 0 && c >= 0)) return true;
+  }
+  return false;
+}
+
+/// Returns the greatest absolute height of that part of `subject` which lies over `clip`.
+double PatchBound::clipped_height(const Points& clip, const Points& subject) {
+  std::array<Point, 9> polygon{subject[0], subject[1], subject[2]};  // 3, 4, 6, 9 at worst, however they are rounded.
+  std::size_t size = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::array<Point, 9> kept;
+    std::size_t kept_size = 0;
+    for (std::size_t j = 0; j < size; ++j) {
+      const Point& p = polygon[j];
+      const Point& q = polygon[(j + 1) % size];
+      const double at_p = area2(clip[i], clip[(i + 1) % 3], p);
+      const double at_q = area2(clip[i], clip[(i + 1) % 3], q);
+      if (at_p >= 0) kept[kept_size++] = p;
+      if ((at_p >= 0) == (at_q >= 0)) continue;
+      const double t = at_p / (at_p - at_q);
+      kept[kept_size++] = {p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t, p.height + (q.height - p.height) * t};
+    }
+    polygon = kept;
+    size = kept_size;
+  }
+  double height = 0;
+  for (std::size_t j = 0; j < size; ++j) height = std::max(height, std::abs(polygon[j].height));
+  return height;
+}
+
+/// How the edge from p to q passes the ray from `centre` along x: 1 upwards, −1 downwards, 0 not at all.
+int PatchBound::crossing(const Point& p, const Point& q, const Point& centre) {
+  const bool p_below = p.y <= centre.y;
+  const bool q_below = q.y <= centre.y;
+  if (p_below == q_below) return 0;
+  const bool left = area2(p, q, centre) > 0;
+  return p_below ? (left ? 1 : 0) : (left ? 0 : -1);
+}
+
+PatchBound::Points PatchBound::project(const Frame& frame, Index face) const {
+  return {frame.project(surface_.corner_position(3 * face)), frame.project(surface_.corner_position(3 * face + 1)),
+          frame.project(surface_.corner_position(3 * face + 2))};
+}
+
+/// Whether the face is in the patch, which it joins if it is over or under the triangle.
+bool PatchBound::add_if_over(const Frame& frame, Index face) {
+  return was_tested(face) ? state_[face] % 2 != 0 : add_tested(frame, face, project(frame, face));
+}
+
+/// The same for the face of the corner `other`, two of whose corners are known: those of its edge.
+bool PatchBound::add_across(const Frame& frame, Index other, const Point& at_other, const Point& after_other) {
+  const Index face = face_of_corner(other);
+  if (was_tested(face)) return state_[face] % 2 != 0;
+  Points points;
+  points[other % 3] = at_other;
+  points[next_corner(other) % 3] = after_other;
+  points[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
+  return add_tested(frame, face, points);
+}
+
+bool PatchBound::add_tested(const Frame& frame, Index face, const Points& points) {
+  const bool over = !separated(frame.corners, points);
+  state_[face] = 2 * run_ + over;
+  if (!over) return false;
+  patch_.push_back(face);
+  points_.push_back(points);
+  return true;
+}
+
+/// Starts the patch with a face, or where that is not over the triangle with one of those around it.
+void PatchBound::start_patch(const Frame& frame, Index start) {
+  if (add_if_over(frame, start)) return;
+  for (Index corner = 3 * start; corner < 3 * start + 3; ++corner) {
+    if (start_in_star(frame, corner)) return;
+  }
+}
+
+/// Tries the faces around a corner's vertex, as far as the next border one way round.
+bool PatchBound::start_in_star(const Frame& frame, Index corner) {
+  for (Index c = opposite_[corner]; c != kNoIndex; c = opposite_[c]) {
+    c = next_corner(c);
+    if (c == corner) return false;
+    if (add_if_over(frame, face_of_corner(c))) return true;
+  }
+  return false;
+}
+
+/// Grows the patch across the face's edges; where an edge is part of the outline, checks it and adds up the winding.
+/// False where the outline enters the triangle.
+bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& points, const Point& centre,
+                               int& winding) {
+  for (Index i = 0; i < 3; ++i) {
+    const Index j = (i + 1) % 3;
+    const Index other = opposite_[3 * face + i];
+    if (other != kNoIndex && add_across(frame, other, points[j], points[i])) continue;
+    if (other == kNoIndex && !separated(frame.corners, {points[i], points[j], points[j]})) return false;
+    winding += crossing(points[i], points[j], centre);
+  }
+  return true;
+}
+
+double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, double target, double slack) {
+  patch_.clear();
+  points_.clear();
+  ++run_;
+  Frame frame;
+  if (!make_frame(triangle, slack, frame)) return kNone;
+  start_patch(frame, start);
+  const Point centre{0, 0, 0};
+  double height = 0;
+  int winding = 0;
+  for (std::size_t i = 0; i < patch_.size(); ++i) {
+    const Points points = points_[i];
+    double face_height = std::max({std::abs(points[0].height), std::abs(points[1].height), std::abs(points[2].height)});
+    if (face_height + slack > target) face_height = clipped_height(frame.corners, points);
+    height = std::max(height, face_height);
+    if (height + slack > target || !visit_outline(frame, patch_[i], points, centre, winding)) return kNone;
+  }
+  return winding != 0 ? height + slack : kNone;
+}
+
+}  // namespace lodestone::detail

@@ -1,0 +1,323 @@
+// The supremum of the distance from a triangle mesh to a surface by branch and bound, in the spirit of
+// M. Tang, M. Lee, Y. J. Kim, "Interactive Hausdorff distance computation for general polygonal models", ACM
+// Transactions on Graphics 28(3), 2009, and of M. Guthe, P. Borodin, R. Klein, "Fast and accurate Hausdorff distance
+// calculation between meshes", Journal of WSCG 13(2), 2005.
+//
+// The bound of a piece rests on one fact: the distance to a *convex* set is a convex function, so that its largest
+// value over a piece is at a corner. Any single face therefore bounds the whole piece. Where no single face will do,
+// the piece is cut in two, each half bounded by a face of its own; the cut goes where the two distances agree, which on
+// a plane is their common edge and between two planes their bisector.
+
+#include "distance/supremum.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace lodestone::detail {
+namespace {
+
+/// Covers rounding: far above that of a distance, far below any tolerance.
+constexpr double kRoundingSlack = 1 + 1e-12;
+
+using Corners = std::array<PieceCorner, 3>;
+using Distances = std::array<double, 3>;  // From the three corners to one face.
+
+double largest(const Distances& d) { return std::max({d[0], d[1], d[2]}); }
+
+/// The bound from the corners' distances alone, which grow by no more than the way from a corner.
+double bound_by_length(const Corners& c) {
+  const double e01 = length(c[0].point - c[1].point);
+  const double e12 = length(c[1].point - c[2].point);
+  const double e20 = length(c[2].point - c[0].point);
+  // No point of a triangle is farther from its nearest corner than the circumradius of the equilateral one.
+  const double reach = std::max({e01, e12, e20}) / std::numbers::sqrt3;
+  const double from_nearest = std::max({c[0].distance, c[1].distance, c[2].distance}) + reach;
+  return std::min({from_nearest, c[0].distance + std::max(e01, e20), c[1].distance + std::max(e01, e12),
+                   c[2].distance + std::max(e12, e20)});
+}
+
+bool all_near_faces(const Corners& c) {
+  return c[0].face != kNoIndex && c[1].face != kNoIndex && c[2].face != kNoIndex;
+}
+
+/// The bound where one face is known to be near all corners; infinity elsewhere.
+double bound_by_same_face(const Corners& c) {
+  const bool same = c[0].face != kNoIndex && c[0].face == c[1].face && c[0].face == c[2].face;
+  return same ? std::max({c[0].distance, c[1].distance, c[2].distance}) : kUnbounded;
+}
+
+/// Where a difference that is `from` at one end and `towards`, of the other sign, at the other end vanishes.
+double zero_between(double from, double towards) {
+  const double range = from - towards;
+  return range != 0 ? std::clamp(from / range, 0.0, 1.0) : 0.5;
+}
+
+/// An upper bound of the distances from a piece to a surface; every face tried can only lower it.
+class PieceBound {
+ public:
+  PieceBound(const Corners& corners, const SurfaceIndex& to, double target)
+      : corners_(corners), to_(to), target_(target), value_(bound_by_length(corners)) {}
+
+  double value() const { return value_; }
+  bool met() const { return value_ <= target_; }
+
+  /// Tries one more face: for the whole piece, and for a part of it beside each face tried before.
+  void try_face(Index face) {
+    if (face == kNoIndex || met()) return;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (tried_[i].face == face) return;
+    }
+    const Candidate candidate{face, distances_to(face)};
+    value_ = std::min(value_, largest(candidate.distances));
+    for (std::size_t i = 0; i < count_ && !met(); ++i) try_cut(tried_[i], candidate);
+    tried_[count_++] = candidate;
+  }
+
+ private:
+  struct Candidate {
+    Index face = kNoIndex;
+    Distances distances{};
+  };
+
+  Distances distances_to(Index face) const {
+    Distances d;
+    for (std::size_t i = 0; i < 3; ++i) {
+      d[i] = corners_[i].face == face ? corners_[i].distance : to_.distance_to_face(corners_[i].point, face);
+    }
+    return d;
+  }
+
+  /// Cuts the piece along the line where its distances to two faces seem to agree.
+  void try_cut(const Candidate& g, const Candidate& h) {
+    double bound = 0;
+    for (std::size_t i = 0; i < 3; ++i) bound = std::max(bound, std::min(g.distances[i], h.distances[i]));
+    for (std::size_t i = 0; i < 3 && bound < value_; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      const double at_i = g.distances[i] - h.distances[i];
+      const double at_j = g.distances[j] - h.distances[j];
+      if ((at_i <= 0) == (at_j <= 0)) continue;
+      const Vec3 cut = corners_[i].point + (corners_[j].point - corners_[i].point) * zero_between(at_i, at_j);
+      bound = std::max({bound, to_.distance_to_face(cut, g.face), to_.distance_to_face(cut, h.face)});
+    }
+    value_ = std::min(value_, bound);
+  }
+
+  const Corners& corners_;
+  const SurfaceIndex& to_;
+  double target_;
+  double value_;
+  std::size_t count_ = 0;
+  std::array<Candidate, 4> tried_;
+};
+
+}  // namespace
+
+void SurfaceBounds::lower(Index face, double bound, std::span<const Index> found) {
+  if (bound >= faces[face]) return;
+  faces[face] = bound;
+  if (witnesses.empty()) return;
+  Witnesses& witness = witnesses[face];
+  witness = {};
+  if (found.empty() || found.size() > witness.faces.size()) return;
+  if (std::find(found.begin(), found.end(), kNoIndex) != found.end()) return;
+  witness.faces.fill(found[0]);
+  std::copy(found.begin(), found.end(), witness.faces.begin());
+}
+
+SupremumSearch::SupremumSearch(const Mesh& from, const SurfaceIndex& to, PatchBound& to_patch, SurfaceBounds& bounds)
+    : from_(from), to_(to), to_patch_(to_patch), bounds_(bounds) {}
+
+void SupremumSearch::visit_vertices(Goal& goal) {
+  const Index count = static_cast<Index>(from_.face_count());
+  for (Index face = 0; face < count; ++face) {
+    if (is_open(face, goal)) visit_face(face, goal);
+  }
+}
+
+/// Bounds a face by the cheapest means that will do. Vertices come first: what they know serves all faces around them.
+void SupremumSearch::visit_face(Index face, Goal& goal) {
+  bool patch_tried = false;
+  do {
+    const Corners corners = corners_of(face);
+    const std::array<Index, 3> nearest = {corners[0].face, corners[1].face, corners[2].face};
+    bounds_.lower(face, std::min(bound_by_length(corners), bound_by_same_face(corners)), nearest);
+    if (!all_near_faces(corners)) continue;
+    if (is_open(face, goal) && !patch_tried) {
+      patch_tried = true;
+      const double bound = bound_by_patch(corners, goal);
+      bounds_.lower(face, bound, to_patch_.patch());
+    }
+    if (is_open(face, goal)) bounds_.lower(face, bound_by_corners(corners, goal), nearest);
+  } while (is_open(face, goal) && query_one_vertex(face, goal));
+}
+
+double SupremumSearch::bound_by_corners(const Corners& corners, const Goal& goal) const {
+  PieceBound bound(corners, to_, goal.threshold());
+  for (const PieceCorner& corner : corners) bound.try_face(corner.face);
+  return bound.value();
+}
+
+/// Pre: the first corner is near a face.
+double SupremumSearch::bound_by_patch(const Corners& c, const Goal& goal) {
+  return to_patch_.bound({c[0].point, c[1].point, c[2].point}, c[0].face, goal.threshold(), goal.patch_slack());
+}
+
+/// Finds the nearest face of one of the face's vertices, first of those that know none; false where all are known.
+bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
+  Index hint = kNoIndex;
+  Index vertex = kNoIndex;
+  for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
+    const Index v = from_.corner_vertex(corner);
+    const Anchor& anchor = bounds_.vertices[v];
+    if (anchor.face != kNoIndex) hint = anchor.face;
+    if (anchor.exact) continue;
+    if (vertex == kNoIndex || anchor.face == kNoIndex) vertex = v;
+  }
+  if (vertex == kNoIndex) return false;
+  const PieceCorner nearest = query(Vec3(from_.positions[vertex]), hint, face, goal);
+  bounds_.vertices[vertex] = {nearest.distance, nearest.face, true};
+  return true;
+}
+
+PieceCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
+  const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
+  const PieceCorner corner{point, hit.distance, hit.face};
+  if (hit.distance > largest_distance_) {
+    assume(from_face, hit.distance, goal);
+    farthest_point_ = point;
+  }
+  return corner;
+}
+
+void SupremumSearch::assume(Index face, double distance, Goal& goal) {
+  largest_distance_ = distance;
+  farthest_face_ = face;
+  goal.found = std::max(goal.found, distance);
+}
+
+OneSidedDeviation SupremumSearch::result() const {
+  OneSidedDeviation result;
+  result.maximum = largest_distance_;
+  result.maximum_bound = std::max(bounds_.maximum(), largest_distance_) * kRoundingSlack;
+  return result;
+}
+
+Corners SupremumSearch::corners_of(Index face) const {
+  Corners corners;
+  for (Index i = 0; i < 3; ++i) {
+    const Index vertex = from_.corner_vertex(3 * face + i);
+    const Anchor& anchor = bounds_.vertices[vertex];
+    corners[i] = {Vec3(from_.positions[vertex]), anchor.distance, anchor.face};
+  }
+  return corners;
+}
+
+void SupremumSearch::split_faces(Goal& goal, std::size_t budget) {
+  const Index count = static_cast<Index>(from_.face_count());
+  for (Index face = 0; face < count; ++face) {
+    if (is_open(face, goal)) add_face(face, goal);
+  }
+  for (; budget > 0 && !heap_.empty() && heap_.front().bound > goal.threshold(); --budget) split(pop(), goal);
+  for (const Piece& piece : heap_) bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
+  heap_.clear();
+  corners_.clear();
+}
+
+/// Turns a face into a piece; from here on the face's bound is the largest of its finished pieces.
+void SupremumSearch::add_face(Index face, Goal& goal) {
+  while (query_one_vertex(face, goal)) {
+  }
+  const Index first = static_cast<Index>(corners_.size());
+  const Corners corners = corners_of(face);
+  corners_.insert(corners_.end(), corners.begin(), corners.end());
+  const double bound = bounds_.faces[face];
+  bounds_.faces[face] = 0;
+  if (!bounds_.witnesses.empty()) bounds_.witnesses[face] = {};
+  add_piece({bound, {}, face}, {first, first + 1, first + 2}, goal);
+}
+
+void SupremumSearch::add_piece(const Piece& parent, const std::array<Index, 3>& corners, Goal& goal) {
+  const Corners c = {corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]};
+  double bound = std::min(parent.bound, bound_by_corners(c, goal));
+  if (bound > goal.threshold()) bound = std::min(bound, bound_by_patch(c, goal));
+  if (bound > goal.threshold()) bound = std::min(bound, bound_by_centre(c, parent.face, goal));
+  const Piece piece{bound, corners, parent.face};
+  if (piece.bound > goal.threshold()) {
+    push(piece);
+  } else {
+    bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
+  }
+}
+
+/// At the corners several faces may be equally near, and the one that covers the piece need not be the one found: the
+/// face nearest to the centre is tried as well.
+double SupremumSearch::bound_by_centre(const Corners& c, Index from_face, Goal& goal) {
+  const Vec3 centre = (c[0].point + c[1].point + c[2].point) * (1.0 / 3.0);
+  const Index face = query(centre, c[0].face, from_face, goal).face;
+  PieceBound bound(c, to_, goal.threshold());
+  bound.try_face(face);
+  for (const PieceCorner& corner : c) bound.try_face(corner.face);
+  return bound.value();
+}
+
+/// Halves a piece across its longest edge.
+void SupremumSearch::split(const Piece& piece, Goal& goal) {
+  std::size_t longest = 0;
+  double longest_squared = -1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 edge = corners_[piece.corners[(i + 1) % 3]].point - corners_[piece.corners[i]].point;
+    if (squared_length(edge) > longest_squared) longest = i, longest_squared = squared_length(edge);
+  }
+  const Index a = piece.corners[longest];
+  const Index b = piece.corners[(longest + 1) % 3];
+  const Index c = piece.corners[(longest + 2) % 3];
+  const Index middle = static_cast<Index>(corners_.size());
+  const Vec3 point = (corners_[a].point + corners_[b].point) * 0.5;
+  corners_.push_back(query(point, corners_[a].face, piece.face, goal));
+  add_piece(piece, {a, middle, c}, goal);
+  add_piece(piece, {middle, b, c}, goal);
+}
+
+void SupremumSearch::push(const Piece& piece) {
+  heap_.push_back(piece);
+  std::push_heap(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.bound < b.bound; });
+}
+
+SupremumSearch::Piece SupremumSearch::pop() {
+  std::pop_heap(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.bound < b.bound; });
+  const Piece piece = heap_.back();
+  heap_.pop_back();
+  return piece;
+}
+
+Goal goal_of(const DeviationOptions& options, double diagonal, double enough) {
+  Goal goal;
+  goal.relative_tolerance = options.relative_tolerance;
+  goal.absolute_tolerance = options.absolute_tolerance;
+  if (!(goal.absolute_tolerance > 0)) goal.absolute_tolerance = 1e-7 * diagonal;
+  goal.enough = enough;
+  return goal;
+}
+
+Deviation narrow_both(SupremumSearch& forward, SupremumSearch& backward, Goal goal, std::size_t budget) {
+  // Vertices first, both ways: what they find raises the threshold before anything is split.
+  forward.visit_vertices(goal);
+  backward.visit_vertices(goal);
+  forward.split_faces(goal, budget);
+  backward.split_faces(goal, budget);
+  Deviation result;
+  result.forward = forward.result();
+  result.backward = backward.result();
+  return result;
+}
+
+Deviation maximum_of_empty(const Mesh& a, const Mesh& b) {
+  Deviation result;
+  if (a.face_count() == 0 && b.face_count() == 0) return result;
+  result.forward.maximum = result.forward.maximum_bound = kUnbounded;
+  result.backward = result.forward;
+  return result;
+}
+
+}  // namespace lodestone::detail

@@ -1,0 +1,401 @@
+// A packed R-tree over faces in a compact order, of which runs of four fill the nodes of an implicit four-wide tree
+// without pointers (as in Kamel and Faloutsos, "On packing R-trees", CIKM 1993). The boxes lie along the principal axes
+// of what they hold, as those of Gottschalk, Lin and Manocha ("OBBTree", SIGGRAPH 1996): boxes along the mesh's axes
+// would all overlap where faces are long and thin. The search is Roussopoulos, Kelley and Vincent's ("Nearest neighbor
+// queries", SIGMOD 1995), depth first and nearest child first.
+//
+// Boxes are floats in coordinates of their node, whose origin is in the midst of them, so that they are as fine as the
+// node is small, wherever the mesh lies and however large the rest of it is. They are grown by more than the rounding
+// of all that, so that what they prune is certainly too far. Everything is computed with in doubles.
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <lodestone/lod/deviation.h>
+
+#include "distance/face_order.h"
+#include "distance/point_spread.h"
+#include "distance/triangle.h"
+
+namespace lodestone {
+namespace {
+
+using detail::PointSpread;
+using detail::Triangle;
+
+constexpr std::size_t kWidth = detail::kRunWidth;
+constexpr double kBoxSlack = 2e-7;       // Of the largest coordinate in a node: more than the rounding of boxes there.
+constexpr double kFarSlack = 1 + 1e-12;  // Relative, of squared distances: for points far outside a node.
+constexpr std::size_t kMostLevels = 17;
+constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each level.
+
+/// A box by its centre and half size along each axis; the default contains nothing.
+struct CentredBox {
+  double centre[3] = {0, 0, 0};
+  double half[3] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                   -std::numeric_limits<double>::infinity()};
+};
+
+using Local = std::array<double, 3>;
+
+/// Coordinates relative to an origin, along axes and in units of their own.
+struct Frame {
+  Vec3f origin;
+  std::array<Vec3, 3> axes;  // The mesh's, in local coordinates.
+
+  Local local(const Vec3& p) const {
+    const Vec3 d = p - Vec3(origin);
+    const Vec3 q = axes[0] * d.x + axes[1] * d.y + axes[2] * d.z;
+    return {q.x, q.y, q.z};
+  }
+};
+
+/// The boxes of four children, transposed for arithmetic on four lanes.
+struct alignas(64) Node {
+  Frame frame;
+  float centre[3][kWidth];
+  float half[3][kWidth];
+
+  void set(std::size_t child, const CentredBox& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      centre[axis][child] = static_cast<float>(box.centre[axis]);
+      half[axis][child] = static_cast<float>(box.half[axis]);
+    }
+  }
+};
+
+/// Twice how far `x` lies outside an interval. The sum of t and |t| needs no comparison, which the compiler would not
+/// turn into lanes.
+double twice_outside(float centre, float half, double x) {
+  const double t = std::fabs(x - static_cast<double>(centre)) - static_cast<double>(half);
+  return t + std::fabs(t);
+}
+
+/// Four times the squared distances of a point to the boxes of a node.
+std::array<double, kWidth> box_distances(const Node& node, const Local& p) {
+  std::array<double, kWidth> result;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    const double x = twice_outside(node.centre[0][i], node.half[0][i], p[0]);
+    const double y = twice_outside(node.centre[1][i], node.half[1][i], p[1]);
+    const double z = twice_outside(node.centre[2][i], node.half[2][i], p[2]);
+    result[i] = x * x + y * y + z * z;
+  }
+  return result;
+}
+
+/// A box by its extremes, grown by uniting.
+struct Extent {
+  Local low;
+  Local high;
+
+  Extent() {
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+  }
+  void add(const Local& p) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+  }
+  bool empty() const { return high[0] < low[0]; }
+  double half_area() const {
+    if (empty()) return 0;
+    const double x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+    return x * y + y * z + z * x;
+  }
+  double largest_coordinate() const {
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 3 && !empty(); ++axis) largest = std::max({largest, -low[axis], high[axis]});
+    return largest;
+  }
+  CentredBox centred(double slack) const {
+    CentredBox box;
+    for (std::size_t axis = 0; axis < 3 && !empty(); ++axis) {
+      box.centre[axis] = 0.5 * (low[axis] + high[axis]);
+      box.half[axis] = 0.5 * (high[axis] - low[axis]) + slack;
+    }
+    return box;
+  }
+};
+
+/// The extents of the four children of a node in one frame.
+using ChildExtents = std::array<Extent, kWidth>;
+
+double half_area(const ChildExtents& children) {
+  double sum = 0;
+  for (const Extent& child : children) sum += child.half_area();
+  return sum;
+}
+
+/// What is known of a run of triangles without looking at each.
+struct Run {
+  PointSpread spread;
+  Extent box;  // Along the mesh's axes.
+
+  void add(const Vec3f& corner) {
+    spread.add({1, Vec3(corner), {}});
+    box.add({double{corner.x}, double{corner.y}, double{corner.z}});
+  }
+  void add(const Run& other) {
+    spread.add(other.spread);
+    box.add(other.box.low);
+    box.add(other.box.high);
+  }
+};
+
+Run run_of(const Triangle& triangle) {
+  Run run;
+  for (const Vec3f& corner : {triangle.a, triangle.b, triangle.c}) run.add(corner);
+  return run;
+}
+
+Vec3 point(const Local& p) { return {p[0], p[1], p[2]}; }
+
+Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
+
+/// `axes` in the mesh's coordinates; `scale` is what lengths are multiplied by.
+Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes, double scale) {
+  const Vec3 u = axes[0] * scale, v = axes[1] * scale, w = axes[2] * scale;
+  return {origin, {Vec3{u.x, v.x, w.x}, Vec3{u.y, v.y, w.y}, Vec3{u.z, v.z, w.z}}};
+}
+
+}  // namespace
+
+struct SurfaceIndex::Impl {
+  std::vector<Triangle> triangles;       // In the order of the tree.
+  std::vector<Index> faces;              // The mesh's face of each triangle.
+  std::vector<Index> places;             // The triangle of each face.
+  std::vector<Node> nodes;               // Level by level from the triangles up; node i has the children 4i … 4i + 3.
+  std::vector<std::size_t> level_begin;  // The first node of each level.
+  double scale = 1;                      // A power of two, which makes the mesh's box about 1 large.
+
+  void set_scale(const Mesh& mesh);
+  void order_faces(const Mesh& mesh);
+  void build_nodes();
+  template <class RunAt>
+  void add_level(std::size_t child_size, std::size_t child_count, const RunAt& run_at, std::vector<Run>& runs);
+  Node make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children, const Run& all) const;
+  ChildExtents child_extents(const Frame& frame, std::size_t begin, std::size_t child_size) const;
+};
+
+namespace {
+
+/// One search on its way: the nearest point so far, and how far it still has to look. With a list it looks for all faces
+/// within the limit.
+class Search {
+ public:
+  Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit, std::vector<Index>* all = nullptr)
+      : tree_(tree), p_(p), best_squared_(limit * limit), all_(all) {
+    hit_.distance = std::numeric_limits<double>::infinity();
+    update_reach();
+  }
+
+  void test(std::size_t place) {
+    ++hit_.visits;
+    const Vec3 q = detail::nearest_on_triangle(p_, tree_.triangles[place]);
+    const double squared = squared_length(p_ - q);
+    const Index face = tree_.faces[place];
+    if (all_ != nullptr) {
+      if (squared <= best_squared_) all_->push_back(face);
+      return;
+    }
+    if (squared > best_squared_ || (squared == best_squared_ && face >= hit_.face)) return;
+    best_squared_ = squared;
+    hit_.point = q;
+    hit_.face = face;
+    update_reach();
+  }
+
+  void descend() {
+    push({0, static_cast<std::uint32_t>(tree_.level_begin.size()), 0}, 0);
+    while (size_ > 0) {
+      const Item item = stack_[--size_];
+      if (item.distance > reach_) continue;
+      open(item);
+    }
+  }
+
+  SurfaceIndex::Hit result() const {
+    SurfaceIndex::Hit hit = hit_;
+    if (hit.face != kNoIndex) hit.distance = std::sqrt(best_squared_);
+    return hit;
+  }
+
+ private:
+  struct Item {
+    double distance;      // Four times the squared distance of the box.
+    std::uint32_t level;  // Of the node, from 1 on.
+    Index place;          // On its level.
+  };
+
+  void open(const Item& item) {
+    ++hit_.visits;
+    const std::uint32_t level = item.level - 1;
+    const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
+    const std::array<double, kWidth> distances = box_distances(node, node.frame.local(p_));
+    const std::size_t base = size_;
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      if (!(distances[i] <= reach_)) continue;
+      const Index place = static_cast<Index>(kWidth * item.place + i);
+      level == 0 ? test(place) : push({distances[i], level, place}, base);
+    }
+  }
+
+  /// Pushes, keeping the entries from `base` on in descending order: the nearest is popped first.
+  void push(const Item& item, std::size_t base) {
+    assert(size_ < kStackSize);
+    std::size_t i = size_++;
+    for (; i > base && stack_[i - 1].distance < item.distance; --i) stack_[i] = stack_[i - 1];
+    stack_[i] = item;
+  }
+
+  /// Finite, so that boxes that contain nothing stay out of it.
+  void update_reach() {
+    const double scaled = 4 * best_squared_ * tree_.scale * tree_.scale * kFarSlack;
+    reach_ = std::min(scaled, std::numeric_limits<double>::max());
+  }
+
+  const SurfaceIndex::Impl& tree_;
+  Vec3 p_;
+  double best_squared_;
+  std::vector<Index>* all_;
+  double reach_ = 0;
+  SurfaceIndex::Hit hit_;
+  std::size_t size_ = 0;
+  std::array<Item, kStackSize> stack_;
+};
+
+}  // namespace
+
+void SurfaceIndex::Impl::set_scale(const Mesh& mesh) {
+  const double size = bounding_box(mesh).diagonal();
+  if (size > 0 && std::isfinite(size)) scale = std::ldexp(1.0, -std::ilogb(size));
+}
+
+void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
+  std::vector<Triangle> all(mesh.face_count());
+  for (Index f = 0; f < all.size(); ++f) all[f] = detail::triangle_of(mesh, f);
+  faces = detail::compact_order(all);
+  places.resize(faces.size());
+  for (const Index f : faces) {
+    places[f] = static_cast<Index>(triangles.size());
+    triangles.push_back(all[f]);
+  }
+}
+
+void SurfaceIndex::Impl::build_nodes() {
+  nodes.reserve(triangles.size() / (kWidth - 1) + kMostLevels);
+  std::vector<Run> runs;
+  std::size_t child_size = 1;
+  std::size_t child_count = triangles.size();
+  do {
+    const std::vector<Run> below = std::exchange(runs, {});
+    add_level(child_size, child_count, [&](std::size_t i) { return child_size > 1 ? below[i] : run_of(triangles[i]); },
+              runs);
+    child_size *= kWidth;
+    child_count = runs.size();
+  } while (child_count > 1);
+}
+
+/// Appends the nodes above runs of `child_size` triangles each, and their own runs to `runs`.
+template <class RunAt>
+void SurfaceIndex::Impl::add_level(std::size_t child_size, std::size_t child_count, const RunAt& run_at,
+                                   std::vector<Run>& runs) {
+  level_begin.push_back(nodes.size());
+  runs.reserve((child_count + kWidth - 1) / kWidth);
+  std::vector<Run> children;
+  for (std::size_t first = 0; first < child_count; first += kWidth) {
+    children.clear();
+    Run all;
+    for (std::size_t i = first; i < std::min(first + kWidth, child_count); ++i) {
+      children.push_back(run_at(i));
+      all.add(children.back());
+    }
+    nodes.push_back(make_node(first * child_size, child_size, children, all));
+    runs.push_back(all);
+  }
+}
+
+/// Makes the node of the triangles from `begin` on, along those axes that leave the smaller boxes.
+Node SurfaceIndex::Impl::make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children,
+                                   const Run& all) const {
+  Node node;
+  const Vec3f origin = rounded(all.spread.mean);
+  node.frame = make_frame(origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale);
+  ChildExtents extents;
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    extents[i].add(node.frame.local(point(children[i].box.low)));
+    extents[i].add(node.frame.local(point(children[i].box.high)));
+  }
+  const Frame turned = make_frame(origin, all.spread.principal_axes(), scale);
+  const ChildExtents turned_extents = child_extents(turned, begin, child_size);
+  if (half_area(turned_extents) < half_area(extents)) {
+    node.frame = turned;
+    extents = turned_extents;
+  }
+  double largest = 0;
+  for (const Extent& extent : extents) largest = std::max(largest, extent.largest_coordinate());
+  const double slack = kBoxSlack * largest + static_cast<double>(std::numeric_limits<float>::min());
+  for (std::size_t i = 0; i < kWidth; ++i) node.set(i, extents[i].centred(slack));
+  return node;
+}
+
+ChildExtents SurfaceIndex::Impl::child_extents(const Frame& frame, std::size_t begin, std::size_t child_size) const {
+  ChildExtents extents;
+  for (std::size_t child = 0; child < kWidth; ++child) {
+    const std::size_t end = std::min(begin + (child + 1) * child_size, triangles.size());
+    for (std::size_t i = begin + child * child_size; i < end; ++i) {
+      for (const Vec3f& corner : {triangles[i].a, triangles[i].b, triangles[i].c}) {
+        extents[child].add(frame.local(Vec3(corner)));
+      }
+    }
+  }
+  return extents;
+}
+
+SurfaceIndex::SurfaceIndex(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
+  if (mesh.face_count() == 0) return;
+  impl_->set_scale(mesh);
+  impl_->order_faces(mesh);
+  impl_->build_nodes();
+}
+
+SurfaceIndex::~SurfaceIndex() = default;
+SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
+SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
+
+// Wider vectors give the same numbers: there is no fused multiply-add (see LodestoneTarget).
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+__attribute__((target_clones("avx2", "default"), flatten))
+#endif
+SurfaceIndex::Hit SurfaceIndex::nearest(const Vec3& p, double limit, Index hint) const {
+  Search search(*impl_, p, limit);
+  if (empty()) return search.result();
+  assert(hint == kNoIndex || hint < impl_->places.size());
+  if (hint != kNoIndex) search.test(impl_->places[hint]);
+  search.descend();
+  return search.result();
+}
+
+void SurfaceIndex::within(const Vec3& p, double distance, std::vector<Index>& faces) const {
+  faces.clear();
+  if (empty()) return;
+  Search(*impl_, p, distance, &faces).descend();
+  std::sort(faces.begin(), faces.end());
+}
+
+double SurfaceIndex::distance_to_face(const Vec3& p, Index face) const {
+  return length(p - detail::nearest_on_triangle(p, impl_->triangles[impl_->places[face]]));
+}
+
+bool SurfaceIndex::empty() const { return impl_->triangles.empty(); }
+
+}  // namespace lodestone

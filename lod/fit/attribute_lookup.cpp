@@ -1,0 +1,238 @@
+#include "fit/attribute_lookup.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <queue>
+#include <tuple>
+#include <vector>
+
+#include <lodestone/core/detail/finite_values.h>
+#include <lodestone/core/detail/grouping.h>
+#include <lodestone/core/detail/texture_areas.h>
+
+#include "distance/triangle.h"
+#include "fit/constrained_edges.h"
+
+namespace lodestone::detail {
+namespace {
+
+// How many faces are looked at without coming nearer before a search ends.
+constexpr int kPatience = 48;
+
+/// What stays with its vertex: skinning, and numbers of things, between which there is nothing.
+bool stays(const Attribute& a) {
+  if (a.name.starts_with("JOINTS_") || a.name.starts_with("WEIGHTS_")) return true;
+  for (const char* known : {"NORMAL", "TANGENT", "TEXCOORD_", "COLOR_", "TARGET_"})
+    if (a.name.starts_with(known)) return false;
+  if (a.type != ComponentType::Float32) return !a.normalized;
+  const std::vector<float> values = attribute_values(a);
+  return std::all_of(values.begin(), values.end(), [](float value) { return value == std::floor(value); });
+}
+
+/// A place on the original: a face and the weights of its corners.
+struct SurfacePlace {
+  Index face = kNoIndex;
+  std::array<double, 3> weights{};
+};
+
+/// The original surface, to walk on without crossing seams.
+class SeamedSurface {
+ public:
+  explicit SeamedSurface(const Mesh& mesh)
+      : mesh_(mesh),
+        across_(mesh.corner_wedge.size(), kNoIndex),
+        wedge_corners_(mesh.wedge_count(), mesh.corner_wedge.size(), [&](Index c) { return mesh.corner_wedge[c]; }) {
+    const auto join = [&](const std::array<Index, 2>& corners) {
+      across_[corners[0]] = corners[1];
+      across_[corners[1]] = corners[0];
+    };
+    for (const MeshEdge& edge : list_edges(mesh)) {
+      if (edge.constrained) continue;
+      join(edge.corners);
+      for (const auto& corners : edge.layers) join(corners);
+    }
+  }
+
+  /// Walks from the faces at a wedge towards `p`, nearest faces first, until it comes no nearer.
+  SurfacePlace nearest_from(Index wedge, const Vec3& p) const {
+    using Step = std::pair<double, Index>;  // squared distance, face
+    std::priority_queue<Step, std::vector<Step>, std::greater<>> waiting;
+    std::map<Index, Barycentric> seen;
+    const auto visit = [&](Index face) {
+      const auto [entry, is_new] = seen.try_emplace(face);
+      if (!is_new) return;
+      entry->second = nearest_weights(p, triangle_of(mesh_, face));
+      waiting.emplace(entry->second.squared_distance, face);
+    };
+    for (const Index corner : wedge_corners_[wedge]) visit(face_of_corner(corner));
+    SurfacePlace best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int patience = kPatience; !waiting.empty() && patience > 0; --patience) {
+      const auto [distance, face] = waiting.top();
+      waiting.pop();
+      if (distance < least) {
+        least = distance;
+        best = {face, seen[face].weights};
+        patience = kPatience;
+      }
+      for (Index k = 0; k < 3; ++k)
+        if (across_[3 * face + k] != kNoIndex) visit(face_of_corner(across_[3 * face + k]));
+    }
+    return best;
+  }
+
+ private:
+  const Mesh& mesh_;
+  std::vector<Index> across_;
+  Grouping wedge_corners_;
+};
+
+bool same_bytes(const Mesh& a, Index wedge_a, const Mesh& b, Index wedge_b) {
+  for (std::size_t i = 0; i < a.attributes.size(); ++i) {
+    const std::size_t bytes = a.attributes[i].element_bytes();
+    if (std::memcmp(&a.attributes[i].data[wedge_a * bytes], &b.attributes[i].data[wedge_b * bytes], bytes) != 0)
+      return false;
+  }
+  return true;
+}
+
+/// Finds the original's wedges by position and attributes.
+class WedgeFinder {
+ public:
+  explicit WedgeFinder(const Mesh& original) : original_(original) {
+    for (Index w = 0; w < original.wedge_count(); ++w) wedges_.emplace_back(key(original, w), w);
+    std::sort(wedges_.begin(), wedges_.end());
+  }
+  Index find(const Mesh& mesh, Index wedge) const {
+    const Key wanted = key(mesh, wedge);
+    for (auto it = std::lower_bound(wedges_.begin(), wedges_.end(), std::pair(wanted, Index{0}));
+         it != wedges_.end() && it->first == wanted; ++it)
+      if (same_bytes(mesh, wedge, original_, it->second)) return it->second;
+    return kNoIndex;
+  }
+
+ private:
+  using Key = std::tuple<float, float, float>;
+  static Key key(const Mesh& mesh, Index wedge) {
+    const Vec3f& p = mesh.positions[mesh.wedge_vertex[wedge]];
+    return {p.x, p.y, p.z};
+  }
+  const Mesh& original_;
+  std::vector<std::pair<Key, Index>> wedges_;
+};
+
+template <class T>
+void store_as(double value, std::byte* out) {
+  const double low = static_cast<double>(std::numeric_limits<T>::lowest());
+  const double high = static_cast<double>(std::numeric_limits<T>::max());
+  const T stored = static_cast<T>(std::is_integral_v<T> ? std::clamp(std::round(value), low, high) : value);
+  std::memcpy(out, &stored, sizeof stored);
+}
+
+void store_component(ComponentType type, double value, std::byte* out) {
+  switch (type) {
+    case ComponentType::Int8:
+      return store_as<std::int8_t>(value, out);
+    case ComponentType::UInt8:
+      return store_as<std::uint8_t>(value, out);
+    case ComponentType::Int16:
+      return store_as<std::int16_t>(value, out);
+    case ComponentType::UInt16:
+      return store_as<std::uint16_t>(value, out);
+    case ComponentType::UInt32:
+      return store_as<std::uint32_t>(value, out);
+    case ComponentType::Float32:
+      return store_as<float>(value, out);
+  }
+}
+
+/// Blends one attribute of the original at a place into a wedge of the level.
+void blend(const Mesh& original, const std::vector<float>& values, const SurfacePlace& place, Attribute& attribute,
+           Index wedge) {
+  const std::size_t width = attribute.component_count;
+  std::array<double, 16> sum{};
+  for (Index k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < width; ++i)
+      sum[i] += place.weights[k] * static_cast<double>(values[original.corner_wedge[3 * place.face + k] * width + i]);
+  const bool is_direction = (attribute.name == "NORMAL" || attribute.name == "TANGENT") && width >= 3;
+  if (is_direction) {
+    const double norm = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    if (!(norm > 0)) return;  // opposite directions: keep the vertex's own
+    for (std::size_t i = 0; i < 3; ++i) sum[i] /= norm;
+  }
+  const std::size_t kept = attribute.name == "TANGENT" ? 3 : width;  // a tangent's sign is no number to blend
+  const double unit = attribute.normalized ? largest_component(attribute.type) : 1;
+  const std::size_t size = component_bytes(attribute.type);
+  for (std::size_t i = 0; i < kept; ++i)
+    store_component(attribute.type, sum[i] * unit, &attribute.data[(wedge * width + i) * size]);
+}
+
+void copy_wedge(const Mesh& from, Mesh& to, Index wedge) {
+  for (std::size_t i = 0; i < to.attributes.size(); ++i) {
+    const std::size_t bytes = to.attributes[i].element_bytes();
+    std::memcpy(&to.attributes[i].data[wedge * bytes], &from.attributes[i].data[wedge * bytes], bytes);
+  }
+}
+
+/// Puts vertices back at whose faces a texture has turned over; returns whether there were any.
+bool put_back_turned(const Mesh& before, const std::vector<std::vector<int>>& orientation, Mesh& level) {
+  const TextureAreas textures(level);
+  std::vector<std::uint8_t> back(level.vertex_count(), 0);
+  bool any = false;
+  for (std::size_t t = 0; t < textures.count(); ++t)
+    for (Index f = 0; f < level.face_count(); ++f) {
+      if (textures.area(t, level, f) * orientation[t][f] >= 0) continue;
+      for (Index k = 0; k < 3; ++k) {
+        const Index v = level.corner_vertex(3 * f + k);
+        if (level.positions[v] == before.positions[v]) continue;
+        back[v] = 1;
+        any = true;
+      }
+    }
+  for (Index v = 0; v < level.vertex_count(); ++v)
+    if (back[v] != 0) level.positions[v] = before.positions[v];
+  for (Index w = 0; w < level.wedge_count(); ++w)
+    if (back[level.wedge_vertex[w]] != 0) copy_wedge(before, level, w);
+  return any;
+}
+
+/// The sign of every face's area in every texture, with the attributes of `before` on the faces of `level`.
+std::vector<std::vector<int>> orientations(const Mesh& before, const Mesh& level) {
+  const TextureAreas textures(before);
+  std::vector<std::vector<int>> signs(textures.count());
+  for (std::size_t t = 0; t < signs.size(); ++t)
+    for (Index f = 0; f < level.face_count(); ++f) {
+      const double area = textures.area(t, level, f);
+      signs[t].push_back(area > 0 ? 1 : area < 0 ? -1 : 0);
+    }
+  return signs;
+}
+
+}  // namespace
+
+void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
+  if (level.attributes.empty()) return;
+  const SeamedSurface surface(original);
+  const WedgeFinder finder(original);
+  std::vector<std::vector<float>> values;
+  for (const Attribute& a : original.attributes)
+    values.push_back(stays(a) ? std::vector<float>() : finite_values(a));
+  for (Index w = 0; w < level.wedge_count(); ++w) {
+    const Index v = level.wedge_vertex[w];
+    if (level.positions[v] == before.positions[v]) continue;
+    const Index source = finder.find(before, w);
+    if (source == kNoIndex) continue;
+    const SurfacePlace place = surface.nearest_from(source, Vec3(level.positions[v]));
+    for (std::size_t i = 0; i < level.attributes.size() && place.face != kNoIndex; ++i)
+      if (!values[i].empty()) blend(original, values[i], place, level.attributes[i], w);
+  }
+  const std::vector<std::vector<int>> signs = orientations(before, level);
+  while (put_back_turned(before, signs, level)) {
+  }
+}
+
+}  // namespace lodestone::detail

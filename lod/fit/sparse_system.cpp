@@ -1,0 +1,116 @@
+// Conjugate gradients with the 3 × 3 blocks of the diagonal as preconditioner, after Hestenes, Stiefel: Methods of conjugate gradients for
+// solving linear systems (1952).
+
+#include "fit/sparse_system.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lodestone::detail {
+namespace {
+
+constexpr double kEnough = 1e-12;  // of the squared residual at the start
+
+double sum_of_products(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
+  return sum;
+}
+
+/// Pre: `m` is positive definite, or zero: then so is the result.
+Symmetric3 inverse(const Symmetric3& m) {
+  const Symmetric3 adjoint{m.yy * m.zz - m.yz * m.yz, m.xx * m.zz - m.zx * m.zx, m.xx * m.yy - m.xy * m.xy,
+                           m.yz * m.zx - m.xy * m.zz, m.xy * m.zx - m.yz * m.xx, m.xy * m.yz - m.zx * m.yy};
+  const double determinant = m.xx * adjoint.xx + m.xy * adjoint.xy + m.zx * adjoint.zx;
+  Symmetric3 result;
+  if (determinant > 0) result.add(adjoint, 1 / determinant);
+  return result;
+}
+
+}  // namespace
+
+SparseSystem::SparseSystem(std::size_t vertex_count, std::span<const Index> corner_vertex) {
+  std::vector<std::pair<Index, Index>> pairs;
+  for (std::size_t f = 0; f + 2 < corner_vertex.size(); f += 3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = corner_vertex[f + k];
+      const Index b = corner_vertex[f + (k + 1) % 3];
+      pairs.emplace_back(a, b);
+      pairs.emplace_back(b, a);
+    }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  row_begin_.assign(vertex_count + 1, 0);
+  for (const auto& [row, column] : pairs) {
+    ++row_begin_[row + 1];
+    column_.push_back(column);
+  }
+  for (std::size_t v = 0; v < vertex_count; ++v) row_begin_[v + 1] += row_begin_[v];
+  clear();
+}
+
+void SparseSystem::clear() {
+  value_.assign(column_.size(), {});
+  diagonal_.assign(row_begin_.size() - 1, {});
+  right_.assign(row_begin_.size() - 1, Vec3{});
+}
+
+Symmetric3& SparseSystem::entry(Index row, Index column) {
+  const auto begin = column_.begin() + row_begin_[row];
+  const auto end = column_.begin() + row_begin_[row + 1];
+  return value_[static_cast<std::size_t>(std::lower_bound(begin, end, column) - column_.begin())];
+}
+
+void SparseSystem::add(const Index* vertices, const double* weights, std::size_t count, const Vec3& target,
+                       const Symmetric3& metric) {
+  const Vec3 pull = metric * target;
+  for (std::size_t i = 0; i < count; ++i) {
+    diagonal_[vertices[i]].add(metric, weights[i] * weights[i]);
+    right_[vertices[i]] += pull * weights[i];
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const double product = weights[i] * weights[j];
+      if (product == 0) continue;
+      entry(vertices[i], vertices[j]).add(metric, product);
+      entry(vertices[j], vertices[i]).add(metric, product);
+    }
+  }
+}
+
+void SparseSystem::multiply(const std::vector<Vec3>& x, std::vector<Vec3>& out) const {
+  for (std::size_t row = 0; row < out.size(); ++row) {
+    Vec3 sum = diagonal_[row] * x[row];
+    for (Index i = row_begin_[row]; i < row_begin_[row + 1]; ++i) sum += value_[i] * x[column_[i]];
+    out[row] = sum;
+  }
+}
+
+void SparseSystem::solve(std::vector<Vec3>& x, int max_steps) const {
+  const std::size_t count = x.size();
+  std::vector<Vec3> residual(count), preconditioned(count), direction(count), image(count);
+  std::vector<Symmetric3> inverses(count);
+  for (std::size_t i = 0; i < count; ++i) inverses[i] = inverse(diagonal_[i]);
+  const auto precondition = [&] {
+    for (std::size_t i = 0; i < count; ++i)
+      preconditioned[i] = inverses[i] * residual[i];
+  };
+  multiply(x, image);
+  for (std::size_t i = 0; i < count; ++i) residual[i] = right_[i] - image[i];
+  precondition();
+  direction = preconditioned;
+  double product = sum_of_products(residual, preconditioned);
+  const double enough = product * kEnough;
+  for (int step = 0; step < max_steps && product > enough; ++step) {
+    multiply(direction, image);
+    const double curvature = sum_of_products(direction, image);
+    if (!(curvature > 0)) return;
+    const double length = product / curvature;
+    for (std::size_t i = 0; i < count; ++i) x[i] += direction[i] * length;
+    for (std::size_t i = 0; i < count; ++i) residual[i] = residual[i] - image[i] * length;
+    precondition();
+    const double next = sum_of_products(residual, preconditioned);
+    for (std::size_t i = 0; i < count; ++i) direction[i] = preconditioned[i] + direction[i] * (next / product);
+    product = next;
+  }
+}
+
+}  // namespace lodestone::detail

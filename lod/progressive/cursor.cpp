@@ -1,0 +1,97 @@
+#include <lodestone/lod/cursor.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+#include "progressive/canonical_face.h"
+
+namespace lodestone {
+
+using detail::write_canonical;
+
+Cursor::Cursor(const ProgressiveMesh& mesh) : mesh_(&mesh), corners_(mesh.groups.size()) {
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
+    corners_[g].reserve(3 * std::size_t{mesh.groups[g].face_count});
+    corners_[g] = mesh.groups[g].base_corners;
+    corners_[g].reserve(3 * std::size_t{mesh.groups[g].face_count});
+  }
+}
+
+std::size_t Cursor::face_count() const {
+  std::size_t count = 0;
+  for (const std::vector<Index>& corners : corners_) count += corners.size() / 3;
+  return count;
+}
+
+void Cursor::seek(Index position) {
+  position = std::min(position, static_cast<Index>(mesh_->record_count()));
+  while (position_ < position) refine();
+  while (position_ > position) coarsen();
+}
+
+void Cursor::refine() {
+  assert(position_ < mesh_->record_count());
+  const Index first_wedge = mesh_->record_wedge_begin[position_];
+  for (Index s = mesh_->sector_begin[position_]; s < mesh_->sector_begin[position_ + 1]; ++s) {
+    const SectorHeader& sector = mesh_->sectors[s];
+    const Index* polygon = mesh_->polygons.data() + mesh_->polygon_begin[s];
+    const Index* slots = mesh_->slots.data() + mesh_->slot_begin(s);
+    std::vector<Index>& corners = corners_[sector.group];
+    const Index center = first_wedge + sector.wedge;
+    const int size = sector.polygon_size;
+    const int fine_count = size - 2 + appended_face_count(sector.shape);
+    const std::size_t kept_size = corners.size();
+    corners.resize(kept_size + 3 * static_cast<std::size_t>(fine_count - (size - 2)));
+    // The centre is the newest wedge of all, so it stands first.
+    Index* appended = corners.data() + kept_size;
+    for (int i = 0; i < fine_count; ++i) {
+      Index* face = i < size - 2 ? corners.data() + 3 * std::size_t{slots[i]} : appended + 3 * (i - (size - 2));
+      face[0] = center;
+      face[1] = polygon[i];
+      face[2] = polygon[i + 1 < size ? i + 1 : 0];
+    }
+  }
+  ++position_;
+}
+
+void Cursor::coarsen() {
+  assert(position_ > 0);
+  --position_;
+  for (Index s = mesh_->sector_begin[position_]; s < mesh_->sector_begin[position_ + 1]; ++s) {
+    const SectorHeader& sector = mesh_->sectors[s];
+    const Index* polygon = mesh_->polygons.data() + mesh_->polygon_begin[s];
+    const Index* slots = mesh_->slots.data() + mesh_->slot_begin(s);
+    const std::uint8_t* triangle = mesh_->triangles.data() + 3 * mesh_->slot_begin(s);
+    std::vector<Index>& corners = corners_[sector.group];
+    corners.resize(corners.size() - 3 * static_cast<std::size_t>(appended_face_count(sector.shape)));
+    for (int i = 0; i + 2 < sector.polygon_size; ++i, triangle += 3)
+      write_canonical(&corners[3 * std::size_t{slots[i]}], polygon[triangle[0]], polygon[triangle[1]],
+                      polygon[triangle[2]]);
+  }
+}
+
+Mesh extract_level(const ProgressiveMesh& mesh, const Cursor& cursor) {
+  Mesh level;
+  const std::size_t wedge_count = cursor.wedge_count();
+  level.positions.assign(mesh.positions.begin(),
+                         mesh.positions.begin() + static_cast<std::ptrdiff_t>(cursor.vertex_count()));
+  level.wedge_vertex.assign(mesh.wedge_vertex.begin(),
+                            mesh.wedge_vertex.begin() + static_cast<std::ptrdiff_t>(wedge_count));
+  for (const Attribute& attribute : mesh.attributes) {
+    Attribute& copy = level.attributes.emplace_back(
+        Attribute{attribute.name, attribute.type, attribute.component_count, attribute.normalized, {}});
+    copy.data.assign(attribute.data.begin(),
+                     attribute.data.begin() + static_cast<std::ptrdiff_t>(wedge_count * attribute.element_bytes()));
+  }
+  const bool has_materials = mesh.groups.size() > 1 || (!mesh.groups.empty() && mesh.groups[0].material != 0);
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
+    const std::span<const Index> corners = cursor.corners(g);
+    level.corner_wedge.insert(level.corner_wedge.end(), corners.begin(), corners.end());
+    if (has_materials)
+      level.face_material.insert(level.face_material.end(), corners.size() / 3, mesh.groups[g].material);
+  }
+  return level;
+}
+
+}  // namespace lodestone

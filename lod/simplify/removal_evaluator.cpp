@@ -1,0 +1,771 @@
+// The cost of a removal joins three measures of what it changes:
+//   V  the volume swept between the old faces and the new ones, memoryless, after Lindstrom, Turk: Fast and memory
+//      efficient polygonal simplification (Visualization 1998);
+//   D  the distance of everything removed so far to the surface that now stands for it, less most of what it was before
+//      the removal: the memory keeps the total honest, the difference lets what is lost already be;
+//   ΔK the change of the discrete curvature against the full mesh, after Kim, Hong, Kim.
+// The pure metrics of Kim, Hong, Kim use the last alone. bench/README.md has the trials behind the constants.
+
+#include "simplify/removal_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "distance/triangle.h"
+
+namespace lodestone::detail {
+namespace {
+
+constexpr double kMinCosine = 0.2;       // of the angle that faces may turn, at first
+constexpr double kMinShape = 1e-3;       // a new face's height over its longest edge, where there are no slivers yet
+constexpr double kLeastHeight = 4;       // of a face whose normal says something, over the rounding of coordinates
+constexpr double kFreeDistance = 8;      // what rounding of coordinates, and of distances from them, may pretend
+constexpr double kSameShape = 1e-6;      // relative; shapes that differ by less are the same
+constexpr std::size_t kFullyRanked = 3;  // triangulations, by swept volume, whose distances are measured
+constexpr double kForgiven = 0.7;        // share of the distances there were before that a removal is not charged for
+constexpr double kLeastCharged = 0.02;   // share of the distances after it that it is charged for in any case
+constexpr double kBridgeWeight = 3;      // of new surface where the star had none, against distances of points
+constexpr double kLineWeight = 1.5;      // of a border or crease that moves
+constexpr double kLeastLine = 1.5;       // of its distance, where a border or crease that moves is short
+constexpr double kMaterialWeight = 4;    // of a border between materials that moves: faces change their colour
+constexpr double kSeamWeight = 0.1;      // of a seam that moves: what counts there is the price of the attributes
+constexpr double kTieBreak = 0.2;        // weight of the volume swept, as a length, against a pure curvature error
+constexpr double kMinCurvatureChange = 0.2;  // radians; below it curvature does not separate removals
+
+double squared_longest_edge(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
+}
+
+/// How far rounding to floats may have moved the points of a mesh, each way.
+double rounding_of(const Mesh& mesh) {
+  float largest = 0;
+  for (const Vec3f& p : mesh.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return 0.5 * static_cast<double>(largest) * static_cast<double>(std::numeric_limits<float>::epsilon());
+}
+
+double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
+  return 0.25 * length(b - a) * angle_between(normal_a, normal_b);
+}
+
+}  // namespace
+
+bool take_better(Evaluation& best, const Evaluation& found) {
+  if (rejects(found.verdict)) {
+    if (rejects(best.verdict)) best.verdict = found.verdict;
+    return false;
+  }
+  if (!rejects(best.verdict) && best.cost <= found.cost) return false;
+  best = found;
+  return true;
+}
+
+double hybrid_cost(double moved, double turned) {
+  return std::pow(moved, kDistanceExponent) * std::pow(std::max(turned, kMinCurvatureChange), 1 - kDistanceExponent);
+}
+
+RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options)
+    : state_(&state),
+      options_(&options),
+      attributes_(state.mesh, options.weights),
+      ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
+  needs_angles_ = options.metric != Metric::Mean;
+  needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
+  table_.resize(kMaxSearchedPolygon * (kMaxSearchedPolygon - 1) * (kMaxSearchedPolygon - 2) / 6);
+  // Ties are broken on the metric's own scale: K̄ is an angle, the others are lengths.
+  const double diagonal = bounding_box(state.mesh).diagonal();
+  tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
+  const Mesh& mesh = state.mesh;
+  rounding_ = rounding_of(mesh);
+  rounded_square_ = kFreeDistance * kFreeDistance * rounding_ * rounding_;
+  if (mesh.wedge_count() == mesh.vertex_count()) return;
+  wedges_ = Grouping(mesh.vertex_count(), mesh.wedge_count(), [&](Index wedge) { return mesh.wedge_vertex[wedge]; });
+}
+
+bool RemovalEvaluator::relax_angles(bool beyond) {
+  if (turn_limit_ == TurnLimit::None || (turn_limit_ == TurnLimit::Right && !beyond)) return false;
+  turn_limit_ = turn_limit_ == TurnLimit::Acute ? TurnLimit::Right : TurnLimit::None;
+  return true;
+}
+
+Evaluation RemovalEvaluator::evaluate(Index vertex, Removal& removal, Choice& choice) {
+  if (state_->connectivity.is_copy(vertex)) return evaluate_copies(vertex, removal, choice);
+  removal.resize(1);
+  if (const Verdict verdict = gather(vertex); rejects(verdict)) return {verdict};
+  const VertexKind kind = state_->connectivity.kind(vertex, star_);
+  if (kind == VertexKind::Corner) return evaluate_corner(removal.front(), choice);
+  return evaluate_hole(removal.front(), choice);
+}
+
+Evaluation RemovalEvaluator::evaluate_hole(RemovalRecord& record, Choice& choice) {
+  describe_removal(state_->connectivity, star_, record);
+  take_sectors(record, 0);
+  if (const Verdict verdict = check_closing_edge(); rejects(verdict)) return {verdict};
+  for (std::size_t s = 0; s < sectors_.size(); ++s)
+    if (const Verdict verdict = choose(sectors_[s], record.sectors[s], choice[s]); rejects(verdict)) return {verdict};
+  return combine(record);
+}
+
+/// Tries the spokes a corner may move along: the constrained ones, and the others where none of those will do.
+Evaluation RemovalEvaluator::evaluate_corner(RemovalRecord& record, Choice& choice) {
+  if (choice[0] != kNoChoice && is_target(choice[0])) {
+    const Evaluation again = evaluate_collapse(choice[0], record);
+    if (!rejects(again.verdict)) return again;
+  }
+  Evaluation best{Verdict::Link};
+  for (const bool constrained : {true, false}) {
+    for (std::size_t spoke = 0; spoke < ring_size(); ++spoke) {
+      if (!is_target(spoke) || is_constrained_spoke(spoke) != constrained) continue;
+      if (!take_better(best, evaluate_collapse(spoke, trial_))) continue;
+      choice[0] = static_cast<std::uint8_t>(spoke);
+      std::swap(record, trial_);
+    }
+    if (!rejects(best.verdict)) break;
+  }
+  return best;
+}
+
+Evaluation RemovalEvaluator::evaluate_collapse(std::size_t target, RemovalRecord& record) {
+  const Connectivity& mesh = state_->connectivity;
+  if (star_.is_plain()) {
+    describe_removal(mesh, star_, record);
+  } else {
+    describe_collapse(mesh, star_, static_cast<Index>(target), record);
+    for (SectorPatch& sector : record.sectors)
+      if (sector.shape == SectorShape::Moved) sector.polygon.back() = best_wedge(ring_vertex_[target], sector.center);
+  }
+  take_sectors(record, target);
+  if (const Verdict verdict = check_target(target); rejects(verdict)) return {verdict};
+  for (std::size_t s = 0; s < sectors_.size(); ++s)
+    if (const Verdict verdict = fill_with_fan(sectors_[s], record.sectors[s], target); rejects(verdict))
+      return {verdict};
+  return combine(record);
+}
+
+/// Looks at everything around the vertex that does not depend on how its hole is filled.
+Verdict RemovalEvaluator::gather(Index vertex) {
+  const Connectivity& mesh = state_->connectivity;
+  mesh.gather_star(vertex, star_);
+  if (star_.corners.size() > kMaxRing) return Verdict::Ring;
+  if (star_.closed && star_.corners.size() < 3) return Verdict::Link;  // two faces back to back: no hole to fill
+  center_ = Vec3(state_->mesh.positions[vertex]);
+  gather_ring();
+  gather_normals();
+  if (!gather_links(vertex)) return Verdict::Link;
+  gather_outside_curvature();
+  return Verdict::Legal;
+}
+
+void RemovalEvaluator::gather_ring() {
+  const Connectivity& mesh = state_->connectivity;
+  ring_vertex_.clear();
+  ring_position_.clear();
+  for (const Index corner : star_.corners) ring_vertex_.push_back(mesh.vertex(next_corner(corner)));
+  if (!star_.closed) ring_vertex_.push_back(mesh.vertex(previous_corner(star_.corners.back())));
+  for (const Index v : ring_vertex_) ring_position_.push_back(Vec3(state_->mesh.positions[v]));
+}
+
+void RemovalEvaluator::gather_normals() {
+  const Connectivity& mesh = state_->connectivity;
+  fine_corner_ = star_.corners;
+  fine_normal_.resize(fine_corner_.size());
+  has_direction_.resize(fine_corner_.size());
+  outer_normal_.resize(fine_corner_.size());
+  has_outer_.assign(fine_corner_.size(), 0);
+  bends_.assign(fine_corner_.size(), 0);
+  const Index site = mesh.site(mesh.vertex(fine_corner_.front()));
+  const auto corner_position = [&](Index corner) { return Vec3(state_->mesh.positions[mesh.vertex(corner)]); };
+  for (std::size_t i = 0; i < fine_corner_.size(); ++i) {
+    const Vec3& a = ring_position_[i];
+    const Vec3& b = ring_position_[(i + 1) % ring_size()];
+    fine_normal_[i] = cross(a - center_, b - center_);
+    has_direction_[i] = has_direction(squared_length(fine_normal_[i]), squared_longest_edge(center_, a, b)) ? 1 : 0;
+    const Index outer = mesh.opposite(fine_corner_[i]);
+    has_outer_[i] = outer != kNoIndex && mesh.site(mesh.vertex(outer)) != site ? 1 : 0;
+    bends_[i] = outer != kNoIndex && !mesh.is_crease(fine_corner_[i]) ? 1 : 0;
+    if (needs_dihedrals_ && outer != kNoIndex) outer_normal_[i] = cross(a - b, corner_position(outer) - b);
+  }
+}
+
+/// Notes which ring vertices an edge joins, in any sheet; false where the ring meets itself or a face lies over the
+/// star.
+bool RemovalEvaluator::gather_links(Index vertex) {
+  const Connectivity& mesh = state_->connectivity;
+  bool simple = true;
+  for (Index i = 0; i < ring_size(); ++i) {
+    Index& ring = ring_of_site_[mesh.site(ring_vertex_[i])];
+    simple = simple && ring == kNoIndex;
+    ring = i;
+  }
+  linked_.assign(ring_size() * ring_size(), 0);
+  const auto link = [&](Index from, Index at, Index to_vertex) {
+    const Index to = ring_of_site_[mesh.site(to_vertex)];
+    if (to == kNoIndex) return;
+    const bool here = at == ring_vertex_[from] && to_vertex == ring_vertex_[to];
+    for (std::uint8_t* l : {&linked_[from * ring_size() + to], &linked_[to * ring_size() + from]})
+      *l = *l | (here ? kLinkedHere : kLinkedElsewhere);
+  };
+  const auto link_all = [&](Index from, Index at) {
+    const Index start = mesh.corner_at(at);
+    if (start == kNoIndex) return;
+    Index corner = start;
+    for (Index left = start; left != kNoIndex;) {
+      corner = left;
+      link(from, at, mesh.vertex(next_corner(corner)));
+      left = mesh.swing_left(corner);
+      if (left == start) break;
+    }
+    link(from, at, mesh.vertex(previous_corner(corner)));  // at a border no other corner has seen it
+  };
+  for (Index i = 0; i < ring_size() && ring_size() > 2; ++i) {
+    link_all(i, ring_vertex_[i]);
+    for (Index copy = mesh.next_copy(ring_vertex_[i]); copy != ring_vertex_[i]; copy = mesh.next_copy(copy))
+      link_all(i, copy);
+  }
+  for (const Index v : ring_vertex_) ring_of_site_[mesh.site(v)] = kNoIndex;
+  if (ring_size() == 3 && star_.closed) {
+    simple = simple && !has_face(0, 1, 2) && !has_face(0, 2, 1);
+  }
+  return simple && ring_vertex_[0] != vertex;
+}
+
+/// Whether a face joins three vertices of the ring in this order, in any sheet.
+bool RemovalEvaluator::has_face(std::size_t first, std::size_t second, std::size_t third) const {
+  const Connectivity& mesh = state_->connectivity;
+  const auto site = [&](std::size_t i) { return mesh.site(ring_vertex_[i]); };
+  for (Index copy = ring_vertex_[first];;) {
+    const Index start = mesh.corner_at(copy);
+    for (Index corner = start; corner != kNoIndex;) {
+      if (mesh.site(mesh.vertex(next_corner(corner))) == site(second) &&
+          mesh.site(mesh.vertex(previous_corner(corner))) == site(third))
+        return true;
+      corner = mesh.swing_left(corner);
+      if (corner == start) break;
+    }
+    copy = mesh.next_copy(copy);
+    if (copy == ring_vertex_[first]) return false;
+  }
+}
+
+/// Whether the vertex may move along a spoke at all: a border vertex only along the border, and a vertex at which one
+/// line ends not along that line, which would have nowhere to end.
+bool RemovalEvaluator::is_target(std::size_t spoke) const {
+  if (spoke >= ring_size()) return false;
+  if (!star_.closed) return spoke == 0 || spoke + 1 == ring_size();
+  return star_.is_plain() || star_.sector_count() > 1 || spoke != 0;
+}
+
+bool RemovalEvaluator::is_constrained_spoke(std::size_t spoke) const {
+  if (!star_.closed && spoke + 1 == ring_size()) return true;
+  return star_.starts_constrained &&
+         std::binary_search(star_.sector_begin.begin(), star_.sector_begin.end(), static_cast<Index>(spoke));
+}
+
+/// Seams weigh little: what a seam's displacement does is in the price of the attributes.
+double RemovalEvaluator::line_weight(std::size_t spoke) const {
+  if (!star_.closed && (spoke == 0 || spoke + 1 == ring_size())) return kLineWeight;
+  const Connectivity& mesh = state_->connectivity;
+  const Index after = star_.corners[spoke];
+  const Index before = star_.corners[spoke > 0 ? spoke - 1 : star_.corners.size() - 1];
+  if (mesh.is_crease(previous_corner(after))) return kLineWeight;
+  return mesh.material(face_of_corner(after)) != mesh.material(face_of_corner(before)) ? kMaterialWeight : kSeamWeight;
+}
+
+/// The wedge of `vertex` whose attributes are most like those of another.
+Index RemovalEvaluator::best_wedge(Index vertex, Index like) const {
+  if (wedges_.empty()) return vertex;  // never: without seams there are no corners that move
+  AttributeScale scale{1, std::vector<double>(attributes_.texture_count(), 1), {}};
+  Index best = wedges_[vertex].front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Index wedge : wedges_[vertex]) {
+    const double difference = attributes_.squared_difference(like, {{wedge, wedge, wedge}, {1, 0, 0}}, scale);
+    if (difference < least) least = difference, best = wedge;
+  }
+  return best;
+}
+
+/// Lays out the record's sectors in ring terms; `target` is the spoke that moved sectors end at.
+void RemovalEvaluator::take_sectors(RemovalRecord& record, std::size_t target) {
+  sectors_.clear();
+  std::size_t ring_begin = 0;
+  for (const SectorPatch& patch : record.sectors) {
+    Sector& sector = sectors_.emplace_back();
+    sector.patch = &patch;
+    sector.ring_begin = ring_begin;
+    sector.target = target;
+    gather_shapes(sector);
+    for (std::size_t i = 0; i < patch.face_count(); ++i) sector.normal += fine_normal_[ring_begin + i];
+    if (!attributes_.empty()) sector.scale = attribute_scale(patch, ring_begin);
+    ring_begin += patch.face_count();
+  }
+  take_lines(target);
+}
+
+/// Lists the lines that move: from the target to the far end of every other constrained spoke.
+void RemovalEvaluator::take_lines(std::size_t target) {
+  lines_.clear();
+  for (std::size_t spoke = 0; spoke < ring_size(); ++spoke)
+    if (spoke != target && is_constrained_spoke(spoke))
+      lines_.push_back({target, spoke, line_weight(spoke), lines_.empty() && is_constrained_spoke(target)});
+}
+
+/// What was a sliver may stay one, as long as it gets no worse: where the worst of a sector's faces is one, that is the
+/// limit.
+void RemovalEvaluator::gather_shapes(Sector& sector) const {
+  sector.least_shape = kMinShape;
+  for (std::size_t i = sector.ring_begin; i < sector.ring_begin + sector.patch->face_count(); ++i) {
+    const double longest = squared_longest_edge(center_, ring_position_[i], ring_position_[(i + 1) % ring_size()]);
+    if (!(squared_length(fine_normal_[i]) > kMinShape * kMinShape * longest * longest))
+      sector.least_shape = std::min(sector.least_shape, (1 - kSameShape) * length(fine_normal_[i]) / longest);
+    sector.has_directions = sector.has_directions && has_direction_[i] != 0;
+  }
+}
+
+/// Whether a face with such a normal and longest edge is so high that rounding its corners leaves the normal what it
+/// is.
+bool RemovalEvaluator::has_direction(double squared_normal, double squared_longest) const {
+  return squared_normal > kLeastHeight * kLeastHeight * rounding_ * rounding_ * squared_longest;
+}
+
+AttributeScale RemovalEvaluator::attribute_scale(const SectorPatch& patch, std::size_t ring_begin) const {
+  AttributeScale scale;
+  double area = 0;
+  for (std::size_t i = 0; i < patch.face_count(); ++i) area += 0.5 * length(fine_normal_[ring_begin + i]);
+  scale.radius = std::sqrt(area);
+  for (std::size_t t = 0; t < attributes_.texture_count(); ++t) {
+    double positive = 0;
+    double negative = 0;
+    for (std::size_t i = 0; i < patch.face_count(); ++i) {
+      const Index b = patch.polygon[i];
+      const Index c = patch.polygon[i + 1 < patch.polygon.size() ? i + 1 : 0];
+      const double doubled = attributes_.texture_area(t, patch.center, b, c);
+      (doubled > 0 ? positive : negative) += 0.5 * std::abs(doubled);
+    }
+    const double texture_area = positive + negative;
+    scale.texture.push_back(texture_area > 0 ? std::sqrt(area / texture_area) : 0);
+    scale.orientation.push_back(negative == 0 && positive > 0 ? 1 : positive == 0 && negative > 0 ? -1 : 0);
+  }
+  return scale;
+}
+
+void RemovalEvaluator::gather_outside_curvature() {
+  outside_.resize(ring_size());
+  for (std::size_t i = 0; i < ring_size(); ++i) outside_[i] = state_->curvature[ring_vertex_[i]];
+  for (std::size_t i = 0; i < fine_corner_.size(); ++i) {
+    const std::size_t j = (i + 1) % ring_size();
+    const Vec3& a = ring_position_[i];
+    const Vec3& b = ring_position_[j];
+    const double share = length(fine_normal_[i]) / 6;
+    outside_[i].area -= share;
+    outside_[j].area -= share;
+    if (needs_angles_) {
+      outside_[i].gaussian += angle_between(center_ - a, b - a);
+      outside_[j].gaussian += angle_between(a - b, center_ - b);
+    }
+    if (!needs_dihedrals_) continue;
+    if (bends_[i] != 0) {
+      const double rim = dihedral_share(a, b, fine_normal_[i], outer_normal_[i]);
+      outside_[i].mean -= rim;
+      outside_[j].mean -= rim;
+    }
+    if ((i > 0 || star_.closed) && !state_->connectivity.is_crease(previous_corner(fine_corner_[i]))) {
+      const Vec3& before = fine_normal_[i > 0 ? i - 1 : fine_corner_.size() - 1];
+      outside_[i].mean -= dihedral_share(center_, a, before, fine_normal_[i]);
+    }
+  }
+}
+
+Verdict RemovalEvaluator::check_closing_edge() const {
+  if (sectors_[0].patch->shape == SectorShape::Closed) return Verdict::Legal;
+  const bool is_border = sectors_.size() == 1;
+  if (ring_size() == 2) {
+    // A border ear: its one face goes, and the edge behind it becomes the border.
+    return is_border && has_outer_[0] != 0 ? Verdict::Legal : Verdict::Link;
+  }
+  const std::size_t first = 0;
+  const std::size_t last = ring_number(sectors_[0], sectors_[0].size() - 1);
+  const bool lies_on_rim = std::any_of(sectors_.begin(), sectors_.end(), [](const Sector& s) { return s.size() == 2; });
+  return !lies_on_rim && linked(first, last) ? Verdict::Link : Verdict::Legal;
+}
+
+/// Whether the lines that move to the target can lie there: no edge joins their ends yet but one of the rim.
+Verdict RemovalEvaluator::check_target(std::size_t target) const {
+  if (ring_size() == 2) return has_outer_[0] != 0 ? Verdict::Legal : Verdict::Link;
+  const auto is_beside_target = [&](std::size_t spoke) {
+    const std::size_t apart = spoke > target ? spoke - target : target - spoke;
+    return apart == 1 || (star_.closed && apart + 1 == ring_size());
+  };
+  for (const Line& line : lines_)
+    if (!is_beside_target(line.to) && linked(target, line.to)) return Verdict::Link;
+  return Verdict::Legal;
+}
+
+/// Fills a sector with the fan of the target.
+Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std::size_t target) {
+  patch.triangles.clear();
+  const std::size_t size = sector.size();
+  if (size == 2) return Verdict::Legal;
+  std::size_t apex = size - 1;
+  if (!sector.is_moved()) {
+    apex = 0;
+    while (ring_number(sector, apex) != target) ++apex;
+  }
+  const Triangles triangles = fills_.fan(size, apex);
+  patch.triangles.assign(triangles.begin(), triangles.end());
+  return judge_filled(sector, patch);
+}
+
+/// Judges the triangles that a sector has been given.
+Verdict RemovalEvaluator::judge_filled(Sector& sector, const SectorPatch& patch) {
+  if (sector.size() == 2) return Verdict::Legal;
+  reset_triangles(sector.size());
+  if (options_->metric == Metric::Hybrid) gather_points(sector);
+  return judge(sector, patch.triangles);
+}
+
+void RemovalEvaluator::reset_triangles(std::size_t size) {
+  if (size > kMaxSearchedPolygon) return;
+  const std::size_t used = size * (size - 1) * (size - 2) / 6;
+  for (std::size_t i = 0; i < used; ++i) table_[i].known = table_[i].has_angles = table_[i].has_distances = false;
+}
+
+RemovalEvaluator::Triangle& RemovalEvaluator::triangle(const Sector& sector, PolygonTriangle t) {
+  const bool is_tabulated = sector.size() <= kMaxSearchedPolygon;
+  Triangle& entry = is_tabulated ? table_[static_cast<std::size_t>(triangle_number(t))] : untabulated_;
+  if (is_tabulated && entry.known) return entry;
+  const Vec3& a = position(sector, t.a);
+  entry.normal = cross(position(sector, t.b) - a, position(sector, t.c) - a);
+  entry.volume = dot(entry.normal, center_ - a) / 6;
+  entry.has_angles = entry.has_distances = false;
+  entry.verdict = judge(sector, t, entry);
+  entry.known = true;
+  return entry;
+}
+
+Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const Triangle& entry) const {
+  const double square = squared_length(entry.normal);
+  const double longest = squared_longest_edge(position(sector, t.a), position(sector, t.b), position(sector, t.c));
+  if (!(square > sector.least_shape * sector.least_shape * longest * longest)) return Verdict::Shape;
+  if (sector.has_directions && !has_direction(square, longest)) return Verdict::Shape;
+  bool at_rim = false;
+  for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
+    if (!is_rim(sector, from, to)) {
+      const bool is_closing = is_entry(sector, from, to) || is_exit(sector, from, to);
+      if (!is_closing && linked(ring_number(sector, from), ring_number(sector, to))) return Verdict::Link;
+      continue;
+    }
+    if (has_direction_[sector.ring_begin + from] == 0) continue;
+    at_rim = true;
+    if (turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
+  }
+  if (turn_limit_ != TurnLimit::None && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
+  return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Texture : Verdict::Legal;
+}
+
+/// Whether a face turns by more than the angle allowed, from one normal to another, both of any length.
+bool RemovalEvaluator::turns_too_far(const Vec3& to, const Vec3& from) const {
+  if (turn_limit_ == TurnLimit::None) return false;
+  const double cosine = dot(to, from);
+  return cosine < 0 || (turn_limit_ == TurnLimit::Acute && cosine < kMinCosine * length(to) * length(from));
+}
+
+/// Whether a texture would be turned over or lose its area on a new face, where it did neither on the old ones.
+bool RemovalEvaluator::turns_texture(const Sector& sector, PolygonTriangle t) const {
+  const std::vector<Index>& polygon = sector.patch->polygon;
+  for (std::size_t i = 0; i < attributes_.texture_count(); ++i) {
+    const int orientation = sector.scale.orientation[i];
+    if (orientation == 0) continue;
+    if (!(orientation * attributes_.texture_area(i, polygon[t.a], polygon[t.b], polygon[t.c]) > 0)) return true;
+  }
+  return false;
+}
+
+/// Judges a whole triangulation; an empty one is none.
+Verdict RemovalEvaluator::judge(const Sector& sector, Triangles triangles) {
+  if (triangles.empty()) return Verdict::Shape;
+  for (const PolygonTriangle t : triangles)
+    if (const Verdict verdict = triangle(sector, t).verdict; rejects(verdict)) return verdict;
+  return Verdict::Legal;
+}
+
+/// Triangulation `which` of a sector's polygon: from the table; of a large polygon the fan from corner `which`, or,
+/// where that is past the last, the one of least volume. Empty where there is none.
+RemovalEvaluator::Triangles RemovalEvaluator::candidate(const Sector& sector, int which) {
+  const auto size = static_cast<int>(sector.size());
+  if (size <= kMaxTabulatedPolygon) return triangulation(size, which);
+  return which < size ? fills_.fan(sector.size(), static_cast<std::size_t>(which)) : least_volume(sector);
+}
+
+/// The admissible triangulation with the least sum of squared volumes.
+RemovalEvaluator::Triangles RemovalEvaluator::least_volume(const Sector& sector) {
+  if (sector.size() > kMaxSearchedPolygon) return {};
+  return fills_.cheapest(sector.size(), [&](PolygonTriangle t) {
+    const Triangle& entry = triangle(sector, t);
+    return rejects(entry.verdict) ? std::numeric_limits<double>::infinity() : entry.volume * entry.volume;
+  });
+}
+
+double RemovalEvaluator::squared_volume_sum(const Sector& sector, Triangles triangles) {
+  double sum = 0;
+  for (const PolygonTriangle t : triangles) {
+    const double volume = triangle(sector, t).volume;
+    sum += volume * volume;
+  }
+  return sum;
+}
+
+/// Fills `ranked_` with the admissible triangulations and their squared swept volumes.
+Verdict RemovalEvaluator::list_admissible(const Sector& sector) {
+  const auto size = static_cast<int>(sector.size());
+  const int count = size <= kMaxTabulatedPolygon ? triangulation_count(size) : size + 1;
+  ranked_.clear();
+  Verdict verdict = Verdict::Ring;
+  for (int which = 0; which < count; ++which) {
+    const Triangles triangles = candidate(sector, which);
+    const Verdict found = judge(sector, triangles);
+    verdict = std::min(verdict, found);
+    if (found == Verdict::Legal) ranked_.emplace_back(squared_volume_sum(sector, triangles), which);
+  }
+  return verdict;
+}
+
+/// Picks the best triangulation of a sector, trying `choice` alone where it names one that is still admissible.
+Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch, std::uint8_t& choice) {
+  patch.triangles.clear();
+  if (sector.size() == 2) return Verdict::Legal;
+  reset_triangles(sector.size());
+  const bool is_hybrid = options_->metric == Metric::Hybrid;
+  if (is_hybrid) gather_points(sector);
+  if (choice == kNoChoice || rejects(judge(sector, candidate(sector, choice)))) {
+    if (const Verdict verdict = list_admissible(sector); rejects(verdict)) return verdict;
+    choice = static_cast<std::uint8_t>(is_hybrid ? best_by_distance(sector) : best_by_curvature(sector));
+  }
+  const Triangles chosen = candidate(sector, choice);
+  patch.triangles.assign(chosen.begin(), chosen.end());
+  return Verdict::Legal;
+}
+
+/// Ranks by (V·D)^6 = squared volume · D^6; the curvature's part is left to the order of removals.
+int RemovalEvaluator::best_by_distance(const Sector& sector) {
+  std::sort(ranked_.begin(), ranked_.end());
+  if (ranked_.size() > kFullyRanked) ranked_.resize(kFullyRanked);
+  for (auto& [rank, which] : ranked_) rank *= std::pow(added_squared_distance(sector, candidate(sector, which)), 3);
+  return std::min_element(ranked_.begin(), ranked_.end())->second;
+}
+
+int RemovalEvaluator::best_by_curvature(Sector& sector) {
+  for (auto& [rank, which] : ranked_) rank = curvature_change(sector, candidate(sector, which)) + tie_break(rank);
+  return std::min_element(ranked_.begin(), ranked_.end())->second;
+}
+
+/// What orders removals that leave the curvature (nearly) as it is, as on any developable surface: the volume they
+/// sweep.
+double RemovalEvaluator::tie_break(double squared_volume) const {
+  return kTieBreak * tie_scale_ * std::cbrt(std::sqrt(squared_volume));
+}
+
+void RemovalEvaluator::gather_points(const Sector& sector) {
+  points_.clear();
+  weights_.assign(1, 1.0F);
+  points_.add({});
+  distance_before_ = 0;
+  const CarriedPoints& carried = state_->points;
+  for (const Index face : sector.patch->faces) {
+    for (Index p = carried.first(face); p != kNoIndex; p = carried.next(p)) {
+      points_.add(carried.position(p) - center_);
+      weights_.push_back(carried.weight(p));
+      distance_before_ += static_cast<double>(carried.weight(p) * carried.squared_distance(p));
+    }
+  }
+}
+
+void RemovalEvaluator::measure_distances(const Sector& sector, PolygonTriangle t, Triangle& entry) {
+  entry.squared_distance.resize(points_.padded_size());
+  squared_distances(points_,
+                    {position(sector, t.a) - center_, position(sector, t.b) - center_, position(sector, t.c) - center_},
+                    entry.squared_distance.data());
+  entry.has_distances = true;
+}
+
+double RemovalEvaluator::added_squared_distance(const Sector& sector, Triangles triangles) {
+  nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
+  for (const PolygonTriangle t : triangles) {
+    Triangle& entry = triangle(sector, t);
+    if (!entry.has_distances) measure_distances(sector, t, entry);
+    for (std::size_t i = 0; i < nearest_.size(); ++i) nearest_[i] = std::min(nearest_[i], entry.squared_distance[i]);
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < nearest_.size(); ++i)
+    sum += static_cast<double>(weights_[i] * beyond_rounding(nearest_[i]));
+  return std::max(sum - kForgiven * distance_before_, kLeastCharged * sum);
+}
+
+double RemovalEvaluator::curvature_change(Sector& sector, Triangles triangles) {
+  after_ = outside_;
+  add_coarse_curvature(sector, triangles);
+  return largest_change();
+}
+
+/// Adds what a sector's coarse faces contribute to the curvature of the ring, but for the closing edge's angle.
+void RemovalEvaluator::add_coarse_curvature(Sector& sector, Triangles triangles) {
+  const std::size_t size = sector.size();
+  if (needs_dihedrals_) has_edge_normal_.assign(size * size, 0), edge_normal_.resize(size * size);
+  for (const PolygonTriangle t : triangles) {
+    Triangle& entry = triangle(sector, t);
+    const std::array<std::size_t, 3> corner{t.a, t.b, t.c};
+    const double share = length(entry.normal) / 6;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t from = corner[i];
+      const std::size_t to = corner[(i + 1) % 3];
+      const Vec3& p = position(sector, from);
+      const Vec3& q = position(sector, to);
+      VertexCurvature& at = after_[ring_number(sector, from)];
+      at.area += share;
+      if (needs_angles_) {
+        if (!entry.has_angles) entry.angle[i] = angle_between(q - p, position(sector, corner[(i + 2) % 3]) - p);
+        at.gaussian -= entry.angle[i];
+      }
+      if (!needs_dihedrals_) continue;
+      double angle_share = 0;
+      if (is_rim(sector, from, to)) {
+        const std::size_t rim = sector.ring_begin + from;
+        if (bends_[rim] != 0) angle_share = dihedral_share(p, q, entry.normal, outer_normal_[rim]);
+      } else if (is_entry(sector, from, to) || is_exit(sector, from, to)) {
+        if (is_entry(sector, from, to)) sector.entry_normal = entry.normal;
+        if (is_exit(sector, from, to)) sector.exit_normal = entry.normal;
+      } else if (has_edge_normal_[to * size + from] != 0) {
+        angle_share = dihedral_share(p, q, entry.normal, edge_normal_[to * size + from]);
+      } else {
+        has_edge_normal_[from * size + to] = 1;
+        edge_normal_[from * size + to] = entry.normal;
+      }
+      at.mean += angle_share;
+      after_[ring_number(sector, to)].mean += angle_share;
+    }
+    entry.has_angles = true;
+  }
+}
+
+/// Adds the angles between neighbouring sectors at the edges where they now meet, but for creases.
+void RemovalEvaluator::add_closing_curvature() {
+  if (!needs_dihedrals_ || !star_.closed) return;
+  for (std::size_t s = 0; s < sectors_.size() && sectors_.size() > 1; ++s) {
+    const Sector& before = sectors_[(s + sectors_.size() - 1) % sectors_.size()];
+    const Sector& sector = sectors_[s];
+    if (before.size() == 2 || sector.size() == 2) continue;
+    const bool both_open = !before.is_moved() && !sector.is_moved();
+    if (both_open && (sectors_.size() > 2 || s == 0)) continue;  // no edge, or the one that the other turn sees
+    if (sector.patch->starts_at_crease || (both_open && before.patch->starts_at_crease)) continue;
+    const std::size_t from = ring_number(sector, sector.size() - 1);
+    const std::size_t to = ring_number(sector, 0);
+    const double share =
+        dihedral_share(ring_position_[from], ring_position_[to], before.exit_normal, sector.entry_normal);
+    after_[from].mean += share;
+    after_[to].mean += share;
+  }
+}
+
+double RemovalEvaluator::largest_change() const {
+  double largest = 0;
+  for (std::size_t i = 0; i < ring_size(); ++i) {
+    const double before = options_->reference == Reference::Original
+                              ? static_cast<double>(state_->original_curvature[ring_vertex_[i]])
+                              : metric_curvature(*options_, state_->curvature[ring_vertex_[i]]);
+    largest = std::max(largest, std::abs(before - metric_curvature(*options_, after_[i])));
+  }
+  return largest;
+}
+
+/// Sums the squared distances of the coarse faces' centroids and their new edges' midpoints to the star: the surface
+/// where nothing was, as over a notch that the carried points do not see.
+double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
+  points_.clear();
+  for (const PolygonTriangle t : triangles) {
+    const Vec3& a = position(sector, t.a);
+    const Vec3& b = position(sector, t.b);
+    const Vec3& c = position(sector, t.c);
+    points_.add((a + b + c) * (1.0 / 3) - center_);
+    for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}})
+      if (!is_rim(sector, from, to) && (from < to || from + 1U == sector.size()))
+        points_.add((position(sector, from) + position(sector, to)) * 0.5 - center_);
+  }
+  nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
+  distance_.resize(points_.padded_size());
+  for (std::size_t i = 0; i < sector.patch->face_count(); ++i) {
+    squared_distances(points_, {Vec3{}, position(sector, i) - center_, position(sector, i + 1) - center_},
+                      distance_.data());
+    for (std::size_t p = 0; p < nearest_.size(); ++p) nearest_[p] = std::min(nearest_[p], distance_[p]);
+  }
+  double sum = 0;
+  for (const float squared_distance : nearest_) sum += static_cast<double>(beyond_rounding(squared_distance));
+  return sum;
+}
+
+/// What borders and feature lines are charged for their own displacement: √(√A · D) each, a length, with A the area it
+/// sweeps and D the distance of all its removed vertices to the new edge; at least a multiple of D, which counts where
+/// the edge is short beside it, as at the tip of an ear.
+double RemovalEvaluator::line_cost(Index vertex) const {
+  double sum = 0;
+  for (const Line& line : lines_) {
+    const Vec3& a = ring_position_[line.from];
+    const Vec3& b = ring_position_[line.to];
+    double squared_distance = squared_distance_to_segment(center_, a, b);
+    const auto add_removed = [&](std::size_t neighbour) {
+      for (const Index removed : state_->lines.removed_between(ring_vertex_[neighbour], vertex))
+        squared_distance += squared_distance_to_segment(Vec3(state_->mesh.positions[removed]), a, b);
+    };
+    if (line.carries_from) add_removed(line.from);
+    add_removed(line.to);
+    const double area = 0.5 * length(cross(a - center_, b - center_));
+    const double distance = squared_distance > rounded_square_ ? std::sqrt(squared_distance) : 0;
+    sum += line.weight * std::max(std::sqrt(std::sqrt(area) * distance), kLeastLine * distance);
+  }
+  return sum;
+}
+
+/// Compares the removed wedge's attributes with those of the nearest point of the sector's new faces.
+double RemovalEvaluator::squared_attribute_difference(const Sector& sector, Triangles triangles) const {
+  double least = std::numeric_limits<double>::infinity();
+  AttributeCost::Place place;
+  for (const PolygonTriangle t : triangles) {
+    const std::array<std::size_t, 3> corner{t.a, t.b, t.c};
+    const auto at = [&](std::size_t k) { return state_->mesh.positions[ring_vertex_[ring_number(sector, corner[k])]]; };
+    const Barycentric nearest = nearest_weights(center_, {at(0), at(1), at(2)});
+    if (nearest.squared_distance >= least) continue;
+    least = nearest.squared_distance;
+    place.weights = nearest.weights;
+    for (std::size_t k = 0; k < 3; ++k) place.wedges[k] = sector.patch->polygon[corner[k]];
+  }
+  return attributes_.squared_difference(sector.patch->center, place, sector.scale);
+}
+
+Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
+  after_ = outside_;
+  double squared_volume = 0;
+  double squared_distance = 0;
+  double squared_attributes = 0;
+  const bool is_hybrid = options_->metric == Metric::Hybrid;
+  for (std::size_t s = 0; s < sectors_.size(); ++s) {
+    Sector& sector = sectors_[s];
+    const Triangles triangles = record.sectors[s].triangles;
+    if (sectors_.size() > 1) reset_triangles(sector.size());
+    add_coarse_curvature(sector, triangles);
+    if (triangles.empty()) continue;
+    squared_volume += squared_volume_sum(sector, triangles);
+    if (!is_hybrid) continue;
+    if (sectors_.size() > 1) gather_points(sector);
+    squared_distance += added_squared_distance(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
+    if (!attributes_.empty()) squared_attributes += squared_attribute_difference(sector, triangles);
+  }
+  add_closing_curvature();
+  Evaluation result{Verdict::Legal, 0, largest_change()};
+  result.cost = result.curvature_error + tie_break(squared_volume);
+  if (!is_hybrid) return result;
+  const double swept = std::sqrt(std::cbrt(std::sqrt(squared_volume)) * std::sqrt(squared_distance));
+  const double moved = swept + line_cost(record.vertex) + std::sqrt(squared_attributes);
+  result.cost = hybrid_cost(moved, result.curvature_error);
+  return result;
+}
+
+}  // namespace lodestone::detail
