@@ -13,7 +13,8 @@ function(lodestone_settings target)
   endif()
 endfunction()
 
-# lodestone_module(core SOURCES src/a.cpp … DEPENDS lodestone::… PRIVATE_DEPENDS …)
+# lodestone_module(core SOURCES src/a.cpp … DEPENDS lodestone::… PRIVATE_DEPENDS …): a library of its own. Its public headers
+# lie in include/ of the folder, those for the folder alone are named from it: "distance/triangle.h".
 function(lodestone_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   set(target lodestone_${name})
@@ -22,9 +23,18 @@ function(lodestone_module name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   lodestone_settings(${target})
   set_property(GLOBAL APPEND PROPERTY LODESTONE_MODULES ${target})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# lodestone_group(lod lodestone::a lodestone::b …): several modules under one name.
+function(lodestone_group name)
+  set(target lodestone_${name})
+  add_library(${target} INTERFACE)
+  add_library(lodestone::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_link_libraries(${target} INTERFACE ${ARGN})
+  set_property(GLOBAL APPEND PROPERTY LODESTONE_MODULES ${target})
 endfunction()

@@ -10,6 +10,7 @@
 #include <lodestone/core/detail/try.h>
 
 #include "base/bytes.h"
+#include "base/files_beside.h"
 #include "gltf/gltf_container.h"
 #include "gltf/meshopt_decode.h"
 

@@ -9,6 +9,7 @@
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/result.h>
 
+#include "base/files_beside.h"
 #include "base/json.h"
 #include "mesh/soup_file.h"
 

@@ -11,6 +11,7 @@
 #include <lodestone/core/detail/try.h>
 
 #include "base/bytes.h"
+#include "base/files_beside.h"
 #include "gltf/gltf_primitive.h"
 #include "gltf/gltf_scene.h"
 #include "gltf/gltf_skin.h"

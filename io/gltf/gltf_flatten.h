@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string_view>
 
 #include <lodestone/core/result.h>
@@ -16,6 +17,9 @@ namespace lodestone::detail {
 /// node. Faces of one document material share a number: material + 1, 0 for none. A mirrored node's faces change their
 /// winding. Notes say what was left out of the triangles read.
 Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level);
+
+/// Reads the finest level of a glTF as `flatten_scene` joins it. Errors: as those of GltfDocument, and Unsupported.
+Result<SoupFile> read_gltf(std::span<const std::byte> bytes, const FileFetcher& fetch);
 
 /// Returns an error for an extension that the document requires and that we would misread it without.
 /// `understood` names one more that is no obstacle to the caller.

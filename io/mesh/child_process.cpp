@@ -18,6 +18,7 @@
 
 #include <lodestone/core/detail/text.h>
 
+#include "base/bytes.h"
 #include "mesh/soup_file.h"
 
 namespace lodestone::detail {

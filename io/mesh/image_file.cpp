@@ -7,6 +7,7 @@
 #include <lodestone/core/detail/text.h>
 
 #include "base/bytes.h"
+#include "base/files_beside.h"
 
 namespace lodestone::detail {
 namespace {

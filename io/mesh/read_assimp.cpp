@@ -12,6 +12,7 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/files_beside.h"
 #include "base/transform.h"
 #include "mesh/child_process.h"
 #include "mesh/image_file.h"

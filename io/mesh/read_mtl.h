@@ -9,6 +9,7 @@
 
 #include <lodestone/io/material.h>
 
+#include "base/files_beside.h"
 #include "mesh/image_file.h"
 #include "mesh/soup_file.h"
 

@@ -15,6 +15,8 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/bytes.h"
+#include "base/files_beside.h"
 #include "base/number_text.h"
 #include "mesh/polygon_soup.h"
 #include "mesh/read_mtl.h"

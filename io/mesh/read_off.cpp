@@ -14,6 +14,7 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/bytes.h"
 #include "base/number_text.h"
 #include "mesh/polygon_soup.h"
 #include "mesh/soup_file.h"

@@ -13,6 +13,8 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/bytes.h"
+#include "base/files_beside.h"
 #include "base/number_text.h"
 #include "mesh/image_file.h"
 #include "mesh/polygon_soup.h"

@@ -12,6 +12,7 @@
 #include <lodestone/io/file.h>
 #include <lodestone/io/read_mesh.h>
 
+#include "base/files_beside.h"
 #include "gltf/gltf_flatten.h"
 #include "gltf/gltf_primitive.h"
 #include "gltf/gltf_scene.h"

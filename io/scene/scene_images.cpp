@@ -3,6 +3,7 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/files_beside.h"
 #include "gltf/gltf_container.h"
 #include "mesh/image_file.h"
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/files_beside.h"
 #include "mesh/soup_file.h"
 #include "scene/scene_impl.h"
 

@@ -8,6 +8,8 @@
 #include <lodestone/io/stream_format.h>
 #include <lodestone/lod/cursor.h>
 
+#include "base/files_beside.h"
+#include "formats/read_mesh_bytes.h"
 #include "gltf/gltf_flatten.h"
 #include "gltf/gltf_scene.h"
 #include "mesh/float_spacing.h"

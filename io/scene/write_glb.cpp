@@ -1,8 +1,9 @@
-#include <lodestone/io/scene.h>
+#include "scene/write_glb.h"
+
+#include <utility>
 
 #include <lodestone/core/detail/try.h>
-
-#include "mesh/mesh_writers.h"
+#include <lodestone/io/scene.h>
 
 namespace lodestone::detail {
 

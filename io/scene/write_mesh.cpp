@@ -4,8 +4,9 @@
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 
+#include "base/files_beside.h"
 #include "mesh/mesh_writers.h"
-#include "mesh/soup_file.h"
+#include "scene/write_glb.h"
 
 namespace lodestone {
 

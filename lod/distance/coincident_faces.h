@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
-#include <lodestone/lod/deviation.h>
+#include <lodestone/lod/surface_index.h>
 
 namespace lodestone::detail {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
-#include <lodestone/lod/deviation.h>
+#include <lodestone/lod/surface_index.h>
 
 #include "fit/fit_samples.h"
 

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include <lodestone/lod/deviation.h>
+#include <lodestone/lod/surface_index.h>
 
 #include "distance/triangle.h"
 #include "fit/attribute_lookup.h"

@@ -6,7 +6,7 @@
 
 #include <lodestone/core/detail/texture_areas.h>
 #include <lodestone/core/mesh.h>
-#include <lodestone/lod/simplify.h>
+#include <lodestone/lod/simplify_options.h>
 
 namespace lodestone::detail {
 

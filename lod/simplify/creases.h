@@ -2,7 +2,7 @@
 
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/mesh.h>
-#include <lodestone/lod/simplify.h>
+#include <lodestone/lod/simplify_options.h>
 
 namespace lodestone::detail {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <lodestone/core/connectivity.h>
-#include <lodestone/lod/simplify.h>
+#include <lodestone/lod/simplify_options.h>
 
 namespace lodestone::detail {
 

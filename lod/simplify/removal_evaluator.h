@@ -11,7 +11,7 @@
 #include <lodestone/core/detail/grouping.h>
 #include <lodestone/core/removal.h>
 #include <lodestone/core/triangulation.h>
-#include <lodestone/lod/simplify.h>
+#include <lodestone/lod/simplify_options.h>
 
 #include "distance/point_triangle.h"
 #include "simplify/attribute_cost.h"

@@ -5,7 +5,7 @@
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/curvature.h>
 #include <lodestone/core/removal.h>
-#include <lodestone/lod/simplify.h>
+#include <lodestone/lod/simplify_options.h>
 
 #include "simplify/carried_points.h"
 #include "simplify/feature_lines.h"

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <vector>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/lod/surface_index.h>
 
 namespace lodestone {
 
@@ -34,38 +32,6 @@ struct DeviationOptions {
   double relative_tolerance = 0.001;   ///< maximum_bound ≤ maximum·(1 + this) + absolute_tolerance, if the budget lasts
   double absolute_tolerance = 0;       ///< mesh units; 0: 1e-7 of the diagonal
   std::size_t budget = 1'000'000;      ///< pieces to halve for narrowing the maximum, each way; about 100 bytes each
-};
-
-/// A surface prepared for nearest-point queries: a bounding-volume hierarchy over the faces of a mesh.
-class SurfaceIndex {
- public:
-  /// Copies what it needs from `mesh`. Cost: O(n log n).
-  explicit SurfaceIndex(const Mesh& mesh);
-  ~SurfaceIndex();
-  SurfaceIndex(SurfaceIndex&&) noexcept;
-  SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
-
-  struct Hit {
-    double distance = 0;   ///< mesh units; infinity where the mesh has no faces or all lie farther than the limit
-    Vec3 point;            ///< the nearest point of the surface
-    Index face = kNoIndex; ///< the face it lies on
-    Index visits = 0;      ///< nodes opened and faces looked at on the way: what the query cost
-  };
-  /// Returns the surface's nearest point to `p` among those no farther than `limit`; `hint` is a face likely near it.
-  Hit nearest(const Vec3& p, double limit, Index hint = kNoIndex) const;
-
-  /// Sets `faces` to all that are no farther than `distance` from `p`, in ascending order.
-  void within(const Vec3& p, double distance, std::vector<Index>& faces) const;
-
-  /// Returns the distance from `p` to one face; pre: `face` is one of the mesh's.
-  double distance_to_face(const Vec3& p, Index face) const;
-
-  bool empty() const;
-
-  struct Impl;  ///< opaque
-
- private:
-  std::unique_ptr<Impl> impl_;
 };
 
 /// Returns the k-th of a sequence of points that spreads evenly over a face.

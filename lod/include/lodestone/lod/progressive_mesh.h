@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
-#include <lodestone/core/removal.h>
 #include <lodestone/core/result.h>
+#include <lodestone/core/sector_shape.h>
 
 namespace lodestone {
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/result.h>
+
+namespace lodestone::detail {
+
+/// Fetches a file that lies beside or below the one being read, by its relative path.
+using FileFetcher = std::function<Result<std::vector<std::byte>>(const std::filesystem::path& relative)>;
+
+/// Returns what fetches files beside or below a file; it goes by names in any case where the exact one is not there.
+FileFetcher files_beside(const std::filesystem::path& path);
+
+/// Returns a path's extension in lower case, without the dot.
+std::string extension_of(const std::filesystem::path& path);
+
+}  // namespace lodestone::detail
