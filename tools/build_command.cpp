@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/parallel.h>
+
 #include "build_output.h"
 #include "build_run.h"
 #include "messages.h"
@@ -15,7 +17,7 @@
 namespace lodestone::tool {
 namespace {
 
-constexpr int kMaxLevelCount = 32;
+constexpr int kMaxLevelCount = 32, kMaxThreadCount = 1024;
 
 /// Places a file beside the output, in a folder that is made where it does not exist.
 Result<void> place_beside(std::optional<std::filesystem::path>& file, const std::filesystem::path& input,
@@ -94,6 +96,9 @@ void BuildCommand::add_to(CLI::App& app) {
   app.add_option("--report", report, "Write a JSON report")->type_name("R.json");
   app.add_option("--html", html, "Write a page that shows the levels, their errors and where these are")
       ->type_name("P.html");
+  app.add_option("--threads", thread_count, "Use at most so many threads (default: all cores); the result is the same")
+      ->check(CLI::Range(1, kMaxThreadCount))
+      ->type_name("N");
   app.add_flag("--strict", strict, "Write nothing and exit with 5 where a target cannot be met");
   app.add_flag("-q,--quiet", quiet, "Print warnings and errors only");
   add_level_options(app);
@@ -225,8 +230,11 @@ Result<Outcome> BuildCommand::run() const {
   const Result<std::vector<BuildCommand>> parts = split(folders);
   if (!parts) return tl::unexpected(parts.error());
   ProgressBar progress(!quiet);
-  if (parts->size() == 1) return build_one(parts->front(), progress);
-  return build_each(*parts, progress);
+  Result<Outcome> outcome = Outcome::Done;
+  with_threads(thread_count, [&] {
+    outcome = parts->size() == 1 ? build_one(parts->front(), progress) : build_each(*parts, progress);
+  });
+  return outcome;
 }
 
 }  // namespace lodestone::tool

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -47,6 +48,7 @@ struct BuildCommand {
   std::optional<int> position_bits;  ///< unset: 14, or what the shape needs
   std::optional<double> grid_step;  ///< in place of bits
   std::vector<double> grid_origin{0, 0, 0};
+  std::size_t thread_count = 0;    ///< 0: as many as the machine has cores
   bool quiet = false;
   bool strict = false;
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include <lodestone/core/parallel.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
 #include <lodestone/lod/attribute_deviation.h>
@@ -21,7 +22,6 @@
 #include "file_words.h"
 #include "input_files.h"
 #include "messages.h"
-#include "parallel.h"
 #include "scene_target.h"
 #include "scene_totals.h"
 #include "stopwatch.h"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,15 @@ inline std::string quoted(const std::string& word) {
   return out.append(1, '\'');
 }
 
-/// Runs the lodestone program under test, without a terminal; `input` is what its standard input reads.
+/// Runs the lodestone program under test, without a terminal; `input` is what its standard input reads, and
+/// `memory_limit`, in bytes, what it may ask the system for.
 inline ProgramRun run_program(const std::vector<std::string>& arguments,
-                              const std::filesystem::path& input = "/dev/null") {
+                              const std::filesystem::path& input = "/dev/null",
+                              std::optional<std::size_t> memory_limit = {}) {
   const ScratchDirectory scratch;
-  std::string command = quoted(LODESTONE_PROGRAM);
+  std::string command;
+  if (memory_limit) command = "ulimit -v " + std::to_string(*memory_limit / 1024) + "; ";
+  command += quoted(LODESTONE_PROGRAM);
   for (const std::string& argument : arguments) command.append(" ").append(quoted(argument));
   command.append(" <").append(quoted(input.string())).append(" >").append(quoted((scratch / "out").string()));
   command.append(" 2>").append(quoted((scratch / "err").string()));

@@ -1,0 +1,72 @@
+#include <lodestone/core/parallel.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <limits>
+#include <mutex>
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace lodestone {
+namespace {
+
+/// The exception of the lowest job that threw. oneTBB would carry the first in time, another one each run.
+class FirstFailure {
+ public:
+  /// Runs a job unless a lower one has failed.
+  template <class Job>
+  void run(std::size_t index, const Job& job) {
+    if (index > lowest_.load(std::memory_order_relaxed)) return;
+    try {
+      job(index);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (index > lowest_.load(std::memory_order_relaxed)) return;
+      lowest_.store(index, std::memory_order_relaxed);
+      exception_ = std::current_exception();
+    }
+  }
+
+  void rethrow() const {
+    if (exception_) std::rethrow_exception(exception_);
+  }
+
+ private:
+  std::atomic<std::size_t> lowest_{std::numeric_limits<std::size_t>::max()};
+  std::mutex mutex_;
+  std::exception_ptr exception_;
+};
+
+}  // namespace
+
+void with_threads(std::size_t thread_count, const std::function<void()>& work) {
+  const int available = tbb::this_task_arena::max_concurrency();
+  const auto wanted = std::min(thread_count, static_cast<std::size_t>(available));
+  tbb::task_arena arena(thread_count == 0 ? available : static_cast<int>(wanted));
+  arena.execute(work);
+}
+
+void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
+  FirstFailure failure;
+  // Jobs are large and of any length: each is a task of its own.
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) failure.run(i, job);
+      },
+      tbb::simple_partitioner());
+  failure.rethrow();
+}
+
+void for_each_chunk(std::size_t count, std::size_t chunk_size,
+                    const std::function<void(std::size_t begin, std::size_t end)>& job) {
+  for_each_in_parallel((count + chunk_size - 1) / chunk_size, [&](std::size_t chunk) {
+    const std::size_t begin = chunk * chunk_size;
+    job(begin, std::min(begin + chunk_size, count));
+  });
+}
+
+}  // namespace lodestone
