@@ -571,9 +571,12 @@ Result<std::vector<EncodedAsset>> BuildRun::encode() {
   const std::vector<std::filesystem::path> paths = output_paths(options_, file_count());
   for (std::size_t i = 0; i < file_count(); ++i) {
     if (lower_extension(paths[i]) == ".gltf") options.gltf_name = paths[i].stem().string();
-    options.measure = [&](std::span<std::vector<AssetLevel>> meshes) { measure_levels(meshes, i); };
-    Result<EncodedAsset> asset = has_file_per_level(options_) ? encode_scene_level(*scene_, levels_, i, options)
-                                                              : encode_scene(*scene_, levels_, options);
+    options.keep_decoded = true;
+    Result<EncodedGeometry> geometry =
+        encode_geometry(*scene_, levels_, options, has_file_per_level(options_) ? std::optional(i) : std::nullopt);
+    if (!geometry) return tl::unexpected(geometry.error());
+    measure_levels(geometry->levels(), i);
+    Result<EncodedAsset> asset = write_asset(std::move(*geometry));
     if (!asset) return tl::unexpected(asset.error());
     for (const std::string& note : asset->layout.notes) add_note(note);
     assets.push_back(std::move(*asset));

@@ -122,7 +122,7 @@ class GeometryWriter {
     count(mesh.face_count(), mesh.wedge_count());
     PrimitiveGeometry geometry = write_vertices(primitive, mesh);
     geometry.indices = add_indices(builder_, mesh.corner_wedge, mesh.wedge_count());
-    if (options_.measure && options_.draco) note_decoded(primitive, group.material, mesh);
+    if (options_.keep_decoded && options_.draco) note_decoded(primitive, group.material, mesh);
     return geometry;
   }
 
@@ -218,7 +218,7 @@ class GeometryWriter {
     if (!output) return write_uncompressed(primitive, group, output.error().message);
     PrimitiveGeometry geometry = describe_draco(primitive, output->encoded, output->decoded);
     geometry.targets = write_targets(primitive, mesh);
-    if (options_.measure) note_decoded(primitive, group.material, decoded_mesh(primitive, output->decoded, mesh));
+    if (options_.keep_decoded) note_decoded(primitive, group.material, decoded_mesh(primitive, output->decoded, mesh));
     return geometry;
   }
 
@@ -287,7 +287,7 @@ class GeometryWriter {
   const QuantizationGrids& grids_;
   const AssetOptions& options_;
   WrittenLevel& written_;
-  TriangleSoup decoded_;  // only with options_.measure and Draco
+  TriangleSoup decoded_;  // only with options_.keep_decoded and Draco
 };
 
 /// Keeps all of a primitive but its geometry.
@@ -342,7 +342,7 @@ Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, c
   const std::uint64_t begin = (builder.binary_bytes() + 3) / 4 * 4;
   GeometryWriter writer(builder, source, level, grids, options, written);
   const std::map<Index, PrimitiveGeometry> geometry = writer.write();
-  if (options.measure) {
+  if (options.keep_decoded) {
     LODESTONE_TRY(written.decoded, writer.decoded());
   }
   written.byte_count = std::max(begin, builder.binary_bytes()) - begin;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -87,7 +88,7 @@ class SceneWriter {
   SceneWriter(const Scene& scene, std::span<const LeveledMesh> meshes, LevelRange range, bool with_streams,
               const AssetOptions& options)
       : scene_(scene),
-        impl_(scene.impl()),
+        impl_(scene_.impl()),
         meshes_(meshes),
         range_(range),
         with_streams_(with_streams),
@@ -98,7 +99,7 @@ class SceneWriter {
         lower_meshes_(meshes.size()),
         written_(meshes.size(), std::vector<WrittenLevel>(range.count)) {}
 
-  Result<EncodedAsset> write() {
+  Result<void> encode() {
     LODESTONE_CHECK(prepare());
     for (std::size_t level = range_.count; level-- > 0;) {
       LODESTONE_CHECK(add_level(level));
@@ -107,7 +108,13 @@ class SceneWriter {
       LODESTONE_CHECK(place_images());
     }
     note_collapsed();
-    if (options_.measure) measure_levels();
+    list_levels();
+    return {};
+  }
+
+  std::vector<std::vector<AssetLevel>>& levels() { return levels_; }
+
+  Result<EncodedAsset> write() {
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_finest(mesh);
     if (with_streams_)
       for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) add_stream(mesh);
@@ -146,12 +153,6 @@ class SceneWriter {
 
   const AssetLevel& level_of(std::size_t mesh, std::size_t level) const {
     return meshes_[mesh].levels[range_.first + level];
-  }
-
-  /// A mesh's levels with the numbers that the file states.
-  std::span<const AssetLevel> stated_levels(std::size_t mesh) const {
-    if (options_.measure) return measured_[mesh];
-    return std::span(meshes_[mesh].levels).subspan(range_.first, range_.count);
   }
 
   Result<void> prepare() {
@@ -226,17 +227,15 @@ class SceneWriter {
                   counts));
   }
 
-  void measure_levels() {
+  void list_levels() {
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
-      measured_.emplace_back();
+      levels_.emplace_back();
       for (std::size_t level = 0; level < range_.count; ++level) {
         const AssetLevel& given = level_of(mesh, level);
-        measured_.back().push_back(
-            {std::move(written_[mesh][level].decoded), given.deviation, given.curvature_error, given.stop_reason,
-             given.deviation_beyond});
+        levels_.back().push_back({std::move(written_[mesh][level].decoded), given.deviation, given.curvature_error,
+                                  given.stop_reason, given.deviation_beyond});
       }
     }
-    options_.measure(measured_);
   }
 
   /// The parts of an object change their level together, at the object's size on the screen.
@@ -257,7 +256,7 @@ class SceneWriter {
     double squares = 0, angle = 0;
     for (const ScenePart& part : object.parts) {
       const NodePresence& presence = impl_.sources[part.mesh].presence[part.node];
-      const Deviation& d = stated_levels(part.mesh)[level].deviation;
+      const Deviation& d = levels_[part.mesh][level].deviation;
       const double rms = presence.scale * std::max(d.forward.rms, d.backward.rms);
       squares += presence.area * rms * rms;
       angle += presence.area * d.mean_normal_angle;
@@ -396,16 +395,16 @@ class SceneWriter {
   Json numbers_of(std::size_t mesh, std::size_t level) const {
     std::optional<double> position_step;
     if (options_.draco) position_step = grids_[mesh].position.step();
-    return level_numbers(stated_levels(mesh)[level], written_[mesh][level], scene_.meshes()[mesh],
+    return level_numbers(levels_[mesh][level], written_[mesh][level], scene_.meshes()[mesh],
                          impl_.sources[mesh].nodes.size(), position_step);
   }
 
-  const Scene& scene_;
+  Scene scene_;
   const Scene::Impl& impl_;
   std::span<const LeveledMesh> meshes_;
   LevelRange range_;
   bool with_streams_;
-  const AssetOptions& options_;
+  AssetOptions options_;
   BufferPlan plan_;
   GlbBuilder builder_;
   LevelMaterials materials_;
@@ -414,7 +413,7 @@ class SceneWriter {
   std::vector<std::vector<LevelGeometry>> geometry_;          // by mesh and level, as the next
   std::vector<std::vector<WrittenLevel>> written_;
   std::map<std::size_t, std::vector<double>> coverages_;  // by node of the document: MSFT_screencoverage
-  std::vector<std::vector<AssetLevel>> measured_;         // as decoded; only with options_.measure
+  std::vector<std::vector<AssetLevel>> levels_;           // with the numbers that the file states
   std::vector<Json> originals_;                           // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
   std::vector<AssetFile> beside_;                  // images
@@ -424,20 +423,45 @@ class SceneWriter {
 
 }  // namespace
 
+struct EncodedGeometry::Impl {
+  Impl(const Scene& scene, std::span<const LeveledMesh> meshes, LevelRange range, bool with_streams,
+       const AssetOptions& options)
+      : writer(scene, meshes, range, with_streams, options) {}
+
+  SceneWriter writer;
+};
+
+EncodedGeometry::EncodedGeometry(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+EncodedGeometry::~EncodedGeometry() = default;
+EncodedGeometry::EncodedGeometry(EncodedGeometry&&) noexcept = default;
+EncodedGeometry& EncodedGeometry::operator=(EncodedGeometry&&) noexcept = default;
+
+std::vector<std::vector<AssetLevel>>& EncodedGeometry::levels() { return impl_->writer.levels(); }
+
+Result<EncodedGeometry> encode_geometry(const Scene& scene, std::span<const LeveledMesh> meshes,
+                                        const AssetOptions& options, std::optional<std::size_t> level) {
+  LODESTONE_CHECK(check_options(options));
+  LODESTONE_TRY(LevelRange range, all_levels(scene, meshes));
+  if (level && *level >= range.count)
+    return fail(ErrorCode::InvalidArgument, text("level ", *level, " of ", range.count, " does not exist"));
+  if (level) range = {*level, 1};
+  auto impl = std::make_unique<EncodedGeometry::Impl>(scene, meshes, range, !level.has_value(), options);
+  LODESTONE_CHECK(impl->writer.encode());
+  return EncodedGeometry(std::move(impl));
+}
+
+Result<EncodedAsset> write_asset(EncodedGeometry geometry) { return geometry.impl().writer.write(); }
+
 Result<EncodedAsset> encode_scene(const Scene& scene, std::span<const LeveledMesh> meshes,
                                   const AssetOptions& options) {
-  LODESTONE_CHECK(check_options(options));
-  LODESTONE_TRY(const LevelRange range, all_levels(scene, meshes));
-  return SceneWriter(scene, meshes, range, true, options).write();
+  LODESTONE_TRY(EncodedGeometry geometry, encode_geometry(scene, meshes, options));
+  return write_asset(std::move(geometry));
 }
 
 Result<EncodedAsset> encode_scene_level(const Scene& scene, std::span<const LeveledMesh> meshes, std::size_t level,
                                         const AssetOptions& options) {
-  LODESTONE_CHECK(check_options(options));
-  LODESTONE_TRY(const LevelRange range, all_levels(scene, meshes));
-  if (level >= range.count)
-    return fail(ErrorCode::InvalidArgument, text("level ", level, " of ", range.count, " does not exist"));
-  return SceneWriter(scene, meshes, {level, 1}, false, options).write();
+  LODESTONE_TRY(EncodedGeometry geometry, encode_geometry(scene, meshes, options, level));
+  return write_asset(std::move(geometry));
 }
 
 }  // namespace lodestone

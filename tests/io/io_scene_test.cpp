@@ -353,13 +353,13 @@ TEST_CASE("levels are measured as clients decode them, attributes and all") {
     const Scene scene = checked(Scene::from_mesh({assembled->mesh, {}, {}, {}, {}}, "shape"));
     AssetOptions options;
     options.draco_position_bits = 12;
-    std::vector<AssetLevel> measured;
-    options.measure = [&](std::span<std::vector<AssetLevel>> meshes) {
-      REQUIRE(meshes.size() == 1);
-      measured = meshes[0];
-      for (AssetLevel& level : meshes[0]) level.deviation.backward.maximum = 0.25;
-    };
-    const EncodedAsset asset = checked(encode_scene(scene, halved(scene), options));
+    options.keep_decoded = true;
+    const std::vector<LeveledMesh> levels = halved(scene);
+    EncodedGeometry geometry = checked(encode_geometry(scene, levels, options));
+    REQUIRE(geometry.levels().size() == 1);
+    const std::vector<AssetLevel> measured = geometry.levels()[0];
+    for (AssetLevel& level : geometry.levels()[0]) level.deviation.backward.maximum = 0.25;
+    const EncodedAsset asset = checked(write_asset(std::move(geometry)));
     const Asset read_back = checked(read_asset_bytes(asset.glb));
     REQUIRE(measured.size() == 2);
     for (std::size_t i = 0; i < measured.size(); ++i) {
@@ -370,8 +370,8 @@ TEST_CASE("levels are measured as clients decode them, attributes and all") {
       CHECK(read_back.levels[i].maximum_deviation == 0.25);
     }
     options.draco = false;
-    CHECK(encode_scene(scene, halved(scene), options));
-    CHECK(measured[0].mesh.positions == scene.meshes()[0].mesh.positions);
+    EncodedGeometry exact = checked(encode_geometry(scene, levels, options));
+    CHECK(exact.levels()[0][0].mesh.positions == scene.meshes()[0].mesh.positions);
   }
 }
 
@@ -385,9 +385,9 @@ TEST_CASE("what quantisation leaves no area is measured all the same") {
   for (Vec3f& p : small.positions) p = {p.x * 1e-3F, p.y * 1e-3F, p.z * 1e-3F};
   std::vector<LeveledMesh> meshes = halved(scene);
   meshes[0].levels[1].mesh = small;
-  Mesh decoded;
-  options.measure = [&](std::span<std::vector<AssetLevel>> levels) { decoded = levels[0][1].mesh; };
-  REQUIRE(encode_scene(scene, meshes, options));
+  options.keep_decoded = true;
+  EncodedGeometry geometry = checked(encode_geometry(scene, meshes, options));
+  const Mesh& decoded = geometry.levels()[0][1].mesh;
   CHECK(decoded.face_count() > 0);
   CHECK(bounding_box(decoded).diagonal() == 0);
 }

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -47,9 +46,7 @@ struct AssetOptions {
   /// Not empty: a .gltf of this name without its extension, its data in NAME.bin and its images as files beside it, in
   /// place of a .glb.
   std::string gltf_name;
-  /// Called when all geometry is encoded, with each mesh's levels, finest first, as clients will decode them: sets
-  /// their deviations, which the file then states. Unset: it states those given.
-  std::function<void(std::span<std::vector<AssetLevel>> meshes)> measure;
+  bool keep_decoded = false;  ///< keep the levels as clients will decode them: see `EncodedGeometry`
 };
 
 /// What was written, for reports.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -89,6 +90,34 @@ struct LeveledMesh {
 /// Returns the farthest that Draco will move a vertex of each mesh, in mesh units, where its levels lie in the box of
 /// the mesh; 0 without Draco.
 std::vector<double> quantisation_errors(const Scene& scene, const AssetOptions& options);
+
+/// A scene whose levels are encoded, all but the numbers that the file states of them. Move-only.
+class EncodedGeometry {
+ public:
+  struct Impl;  ///< opaque
+  explicit EncodedGeometry(std::unique_ptr<Impl> impl);
+  ~EncodedGeometry();
+  EncodedGeometry(EncodedGeometry&&) noexcept;
+  EncodedGeometry& operator=(EncodedGeometry&&) noexcept;
+
+  /// By mesh and level, finest first: the numbers that `write_asset` will state, at first those given. The meshes are as
+  /// clients will decode them where the options keep them, otherwise empty.
+  std::vector<std::vector<AssetLevel>>& levels();
+
+  Impl& impl() { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Encodes the levels of a scene's meshes, or only one of them: the first half of `encode_scene` and
+/// `encode_scene_level`, between which and the second the levels can be measured as they come out of the file.
+/// Pre: one entry for each of the scene's meshes, which outlive what is returned. Errors: as below.
+Result<EncodedGeometry> encode_geometry(const Scene& scene, std::span<const LeveledMesh> meshes,
+                                        const AssetOptions& options, std::optional<std::size_t> level = {});
+
+/// Writes the file around the levels, with their numbers: the second half.
+Result<EncodedAsset> write_asset(EncodedGeometry geometry);
 
 /// Encodes a scene as a multi-LOD .glb: everything in the document as it was, and levels by MSFT_lod below each node
 /// that shows one of the meshes. The binary chunk holds the coarsest levels, what the document keeps, the finer levels
