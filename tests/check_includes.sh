@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
-sources() { find core/src core/include lod io tools -name '*.cpp' -o -name '*.h' | LC_ALL=C sort; }
+sources() { find core lod io tools -name '*.cpp' -o -name '*.h' | LC_ALL=C sort; }
 
 # FILE INCLUDED, for each include of a header of ours.
 includes() {

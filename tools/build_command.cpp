@@ -39,7 +39,7 @@ bool writes_to_standard_output(const BuildCommand& options) {
 }
 
 Result<Outcome> build_one(const BuildCommand& options, ProgressBar& progress) {
-  const Result<BuildResult> result = run_build(options, progress);
+  const Result<FinishedBuild> result = run_build(options, progress);
   progress.clear();
   if (!result) return tl::unexpected(result.error());
   if (result->outcome != Outcome::Done) return result->outcome;

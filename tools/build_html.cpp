@@ -27,13 +27,13 @@ Result<Mesh> world_level(const Scene& scene, std::span<const LeveledMesh> levels
 }
 
 /// Returns what the streams promise: pairs of drawn faces and the world error that they are proved to lie within.
-Json bounds_json(std::span<const ScenePart> parts) {
+Json bounds_json(const Scene& scene, const std::vector<SimplifyResult>& streams) {
   std::vector<std::vector<Index>> faces;
   double largest = 0;
-  for (const ScenePart& part : parts) {
-    faces.push_back(face_counts(*part.mesh));
-    for (const float deviation : part.mesh->deviation)
-      if (std::isfinite(deviation)) largest = std::max(largest, deviation * part.scale);
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    faces.push_back(face_counts(streams[i].mesh));
+    for (const float deviation : streams[i].mesh.deviation)
+      if (std::isfinite(deviation)) largest = std::max(largest, deviation * scene.meshes()[i].scale);
   }
   Json json = Json::array();
   std::size_t last = 0;
@@ -41,10 +41,11 @@ Json bounds_json(std::span<const ScenePart> parts) {
     const double error = largest * std::pow(kBoundRange, -double(i) / (kBoundCount - 1));
     std::size_t drawn = 0;
     double bound = 0;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      const Index position = position_for_deviation(*parts[k].mesh, error / parts[k].scale * (1 + 1e-9));
-      drawn += faces[k][position] * parts[k].instance_count;
-      bound = std::max(bound, parts[k].mesh->deviation[position] * parts[k].scale);
+    for (std::size_t k = 0; k < streams.size(); ++k) {
+      const SceneMesh& mesh = scene.meshes()[k];
+      const Index position = position_for_deviation(streams[k].mesh, error / mesh.scale * (1 + 1e-9));
+      drawn += faces[k][position] * mesh.instance_count;
+      bound = std::max(bound, streams[k].mesh.deviation[position] * mesh.scale);
     }
     if (drawn != last && bound > 0) json.push_back({drawn, bound});
     last = drawn;
@@ -54,17 +55,16 @@ Json bounds_json(std::span<const ScenePart> parts) {
 
 }  // namespace
 
-Result<std::string> build_page(const BuildReport& report, const Scene& scene, std::span<const LeveledMesh> levels,
-                               std::span<const ScenePart> streams) {
+Result<std::string> build_page(const BuildReport& report, const Scene& scene, bool with_bounds) {
   HtmlReport page;
   page.title = "Levels of " + std::filesystem::path(report.input.path).filename().string();
   page.diagonal = report.input.box.diagonal();
   Json numbers = report_json(report);
   numbers.erase("timings_ms");
   numbers.erase("peak_memory_bytes");
-  page.numbers = {{"kind", "build"}, {"report", std::move(numbers)}, {"bounds", bounds_json(streams)}};
-  for (std::size_t i = 0; i < report.levels.size(); ++i) {
-    Result<Mesh> level = world_level(scene, levels, i);
+  page.numbers = {{"kind", "build"}, {"report", std::move(numbers)}, {"bounds", with_bounds ? bounds_json(scene, report.build.simplified) : Json::array()}};
+  for (std::size_t i = 0; i < report.build.levels.size(); ++i) {
+    Result<Mesh> level = world_level(scene, report.build.decoded, i);
     if (!level) return tl::unexpected(level.error());
     page.meshes.push_back(std::move(*level));
   }

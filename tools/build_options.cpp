@@ -1,12 +1,13 @@
 #include "build_options.h"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
+#include "build_settings.h"
 #include "error_size.h"
+#include "file_words.h"
 #include "messages.h"
 
 namespace lodestone::tool {
@@ -54,6 +55,8 @@ Json weights_json(const AttributeWeights& weights) {
 
 bool has_file_per_level(const BuildCommand& options) { return options.profile == "files"; }
 
+namespace {
+
 Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   Result<std::vector<LevelTarget>> given = options.targets.parse();
   if (!given) return given;
@@ -63,18 +66,9 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   }
   if (!by_ratio) return given;
   const double ratio = given->empty() ? kDefaultRatio : given->front().value;
-  std::vector<LevelTarget> levels;
-  for (int i = 1; i < options.level_count.value_or(kDefaultLevelCount); ++i) {
-    levels.push_back({TargetKind::Faces, std::pow(ratio, i), true, given->empty()});
-  }
+  std::vector<LevelTarget> levels = ratio_targets(ratio, options.level_count.value_or(kDefaultLevelCount) - 1);
+  for (LevelTarget& level : levels) level.is_wish = given->empty();
   return levels;
-}
-
-void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene) {
-  std::stable_sort(targets.begin(), targets.end(), [&](const LevelTarget& a, const LevelTarget& b) {
-    const double first = resolve(a, scene).value, second = resolve(b, scene).value;
-    return a.kind == TargetKind::Faces ? first > second : first < second;
-  });
 }
 
 Result<SimplifyOptions> simplify_options(const BuildCommand& options) {
@@ -100,6 +94,35 @@ AssetOptions asset_options(const BuildCommand& options) {
   return asset;
 }
 
+}  // namespace
+
+bool writes_stream(const BuildCommand& options) { return !options.no_stream && !has_file_per_level(options); }
+
+Result<BuildOptions> build_options(const BuildCommand& command) {
+  BuildOptions options;
+  Result<std::vector<LevelTarget>> targets = requested_levels(command);
+  if (!targets) return tl::unexpected(targets.error());
+  options.targets = std::move(*targets);
+  Result<SimplifyOptions> simplify = simplify_options(command);
+  if (!simplify) return tl::unexpected(simplify.error());
+  options.simplify = std::move(*simplify);
+  if (command.settings) {
+    Result<Importance> importance = read_settings(*command.settings);
+    if (!importance) return tl::unexpected(importance.error());
+    options.importance = std::move(*importance);
+  }
+  options.importance.attribute = command.importance;
+  options.scope = command.per_mesh ? TargetScope::Mesh : TargetScope::Scene;
+  options.placement = command.placement == "subset" ? Placement::Subset : Placement::Optimised;
+  options.layout = has_file_per_level(command) ? FileLayout::FilePerLevel : FileLayout::OneFile;
+  options.stream = !command.no_stream;
+  options.strict = command.strict;
+  options.keep_levels = command.html.has_value();
+  options.storage = asset_options(command);
+  if (lower_extension(command.output) == ".gltf") options.storage.gltf_name = command.output.stem().string();
+  return options;
+}
+
 Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count) {
   Json json = {{"metric", options.metric},
                {"normalise", options.normalisation},
@@ -114,7 +137,7 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"weights", weights_json(weights)},
                {"importance", options.importance},
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
-               {"stream", !options.no_stream && !has_file_per_level(options)},
+               {"stream", writes_stream(options)},
                {"draco", !options.no_draco}};
   const bool has_bits = !options.no_draco && options.position_bits;
   json["position_bits"] = has_bits ? Json(*options.position_bits) : Json(nullptr);

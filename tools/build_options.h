@@ -1,33 +1,26 @@
 #pragma once
 
-#include <vector>
+#include <cstddef>
 
 #include <lodestone/core/result.h>
-#include <lodestone/io/asset.h>
-#include <lodestone/lod/simplify.h>
+#include <lodestone/lod/simplify_options.h>
+#include <lodestone/pipeline/build_options.h>
 
 #include "build_command.h"
 #include "json_text.h"
-#include "level_target.h"
 
 namespace lodestone::tool {
 
 /// True with `--profile files`: one file for each level.
 bool has_file_per_level(const BuildCommand& options);
 
-/// Returns the targets of the levels after the whole scene, as the options ask for them.
-Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options);
+/// True where each mesh's removal stream is written.
+bool writes_stream(const BuildCommand& command);
 
-/// Sorts targets of one kind: finest first, by what they come to for the whole scene.
-void sort_finest_first(std::vector<LevelTarget>& targets, const FullSize& scene);
+/// Returns what the options mean, the settings file read. Errors: InvalidArgument, Unreadable, Malformed.
+Result<BuildOptions> build_options(const BuildCommand& command);
 
-/// Returns what the options say of every mesh alike. Errors: InvalidArgument for a weight that is none.
-Result<SimplifyOptions> simplify_options(const BuildCommand& options);
-
-/// Returns how geometry is stored.
-AssetOptions asset_options(const BuildCommand& options);
-
-/// Returns the options as understood, for the report; `weights` are those of simplify_options.
+/// Returns the options as understood, for the report; `weights` are those of build_options.
 Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count);
 
 }  // namespace lodestone::tool

@@ -79,7 +79,7 @@ Result<void> check_page_path(const BuildCommand& options, std::size_t level_coun
 /// The scene as one object: when to change from file to file.
 std::vector<double> scene_coverages(const BuildReport& report) {
   std::vector<double> errors;
-  for (const BuildReport::Level& level : report.levels) {
+  for (const BuildResult::Level& level : report.build.levels) {
     const Deviation& d = level.deviation;
     errors.push_back(visible_error({std::max(d.forward.rms, d.backward.rms), d.mean_normal_angle, report.input.area,
                                     static_cast<double>(level.face_count)}));
@@ -92,8 +92,8 @@ std::vector<double> scene_coverages(const BuildReport& report) {
 Json index_json(const BuildReport& report) {
   Json levels = Json::array();
   const std::vector<double> coverages = scene_coverages(report);
-  for (std::size_t i = 0; i < report.levels.size(); ++i) {
-    const BuildReport::Level& level = report.levels[i];
+  for (std::size_t i = 0; i < report.build.levels.size(); ++i) {
+    const BuildResult::Level& level = report.build.levels[i];
     const Deviation& d = level.deviation;
     levels.push_back({{"file", std::filesystem::path(report.files[i].path).filename().string()},
                       {"faces", level.face_count},
@@ -136,7 +136,8 @@ Result<void> check_paths(const BuildCommand& options, std::size_t level_count) {
   return options.report ? check_destination(*options.report) : Result<void>();
 }
 
-void list_files(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report) {
+void list_files(const BuildCommand& options, BuildReport& report) {
+  const std::vector<EncodedAsset>& assets = report.build.files;
   const std::vector<std::filesystem::path> paths = output_paths(options, assets.size());
   for (std::size_t i = 0; i < assets.size(); ++i) {
     report.files.push_back({paths[i].string(), assets[i].layout.total_bytes});
@@ -163,8 +164,8 @@ std::vector<std::string> leftover_levels(const BuildCommand& options, const Buil
   return {list + (left.size() == 1 ? " is" : " are") + " left from an earlier run: no level of this one"};
 }
 
-Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, const BuildReport& report,
-                           const std::string& page) {
+Result<void> write_outputs(const BuildCommand& options, const BuildReport& report, const std::string& page) {
+  const std::vector<EncodedAsset>& assets = report.build.files;
   const std::vector<std::filesystem::path> paths = output_paths(options, assets.size());
   StagedFiles files;
   const InputFiles input{options.input, report.input.files};

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <lodestone/core/result.h>
-#include <lodestone/io/asset.h>
 
 #include "build_command.h"
 #include "build_report.h"
@@ -21,9 +19,9 @@ std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std
 /// Errors: InvalidArgument, NotWritten.
 Result<void> check_paths(const BuildCommand& options, std::size_t level_count);
 
-/// Enters the encoded files in the report, under the paths that they will have. Pre: one asset for each level of the
-/// report with `--profile files`, otherwise one.
-void list_files(const BuildCommand& options, std::span<const EncodedAsset> assets, BuildReport& report);
+/// Enters the encoded files in the report, under the paths that they will have. Pre: the build
+/// is done.
+void list_files(const BuildCommand& options, BuildReport& report);
 
 /// Returns a sentence that names levels of an earlier run with `--profile files` that lie beside those of this one, or
 /// none. Pre: the report has all levels.
@@ -31,7 +29,6 @@ std::vector<std::string> leftover_levels(const BuildCommand& options, const Buil
 
 /// Writes the encoded files, the index, the page and the report, all of them or none; the last three where the options
 /// ask for them. Pre: as above. Errors: NotWritten.
-Result<void> write_outputs(const BuildCommand& options, std::span<const EncodedAsset> assets, const BuildReport& report,
-                           const std::string& page);
+Result<void> write_outputs(const BuildCommand& options, const BuildReport& report, const std::string& page);
 
 }  // namespace lodestone::tool

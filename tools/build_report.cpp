@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "process_memory.h"
 #include "text_table.h"
@@ -12,13 +14,16 @@ namespace {
 /// Raised by one whenever a member changes its meaning or goes away; new members do not raise it.
 constexpr int kReportSchemaVersion = 1;
 
-Json input_json(const BuildReport::Input& input) {
+Json input_json(const BuildReport& report) {
+  const BuildReport::Input& input = report.input;
+  std::vector<std::string> notes = input.notes;
+  notes.insert(notes.end(), report.build.notes.begin(), report.build.notes.end());
   return {{"path", input.path},
           {"faces", input.face_count},
           {"vertices", input.vertex_count},
           {"bounding_box", box_json(input.box)},
           {"assembly", assembly_json(input.assembly)},
-          {"notes", input.notes}};
+          {"notes", std::move(notes)}};
 }
 
 Json target_json(const std::optional<LevelTarget>& target) {
@@ -30,7 +35,7 @@ Json target_json(const std::optional<LevelTarget>& target) {
 
 Json beyond_json(double deviation) { return deviation > 0 ? Json(deviation) : Json(nullptr); }
 
-Json left_out_json(const BuildReport::LeftOut& left_out) {
+Json left_out_json(const BuildResult::LeftOut& left_out) {
   return {{"target", target_json(left_out.target)},
           {"target_met", left_out.met},
           {"stopped_by", left_out.stopped_by},
@@ -38,7 +43,7 @@ Json left_out_json(const BuildReport::LeftOut& left_out) {
           {"level", left_out.level}};
 }
 
-Json level_json(const BuildReport::Level& level) {
+Json level_json(const BuildResult::Level& level) {
   return {{"faces", level.face_count},
           {"vertices", level.vertex_count},
           {"deviation", deviation_json(level.deviation)},
@@ -51,7 +56,7 @@ Json level_json(const BuildReport::Level& level) {
           {"deviation_beyond", beyond_json(level.deviation_beyond)}};
 }
 
-Json stream_json(const BuildReport::Stream& stream) {
+Json stream_json(const BuildResult::Stream& stream) {
   return {{"bytes", stream.bytes},
           {"records", stream.record_count},
           {"rounds", stream.round_count},
@@ -67,9 +72,9 @@ Json stream_json(const BuildReport::Stream& stream) {
             {"error", stream.blocked.error}}}};
 }
 
-Json part_json(const BuildReport::MeshPart& part) {
+Json part_json(const BuildResult::MeshPart& part) {
   Json levels = Json::array();
-  for (const BuildReport::MeshPart::Level& level : part.levels)
+  for (const BuildResult::MeshPart::Level& level : part.levels)
     levels.push_back({{"faces", level.face_count},
                       {"vertices", level.vertex_count},
                       {"deviation", deviation_json(level.deviation)},
@@ -89,22 +94,26 @@ Json output_json(const BuildReport& report) {
     files.push_back({{"path", file.path}, {"bytes", file.bytes}});
   return {{"path", report.output_path},
           {"bytes", report.output_bytes},
-          {"quantisation_error", report.quantisation_error},
-          {"position_bits", report.position_bits},
+          {"quantisation_error", report.build.quantisation_error},
+          {"position_bits", report.build.position_bits},
           {"files", std::move(files)}};
 }
 
-Json timings_json(const BuildReport::Timings& timings) {
-  return {{"read", timings.read}, {"simplify", timings.simplify}, {"levels", timings.levels}, {"write", timings.write}};
+Json timings_json(const BuildReport& report) {
+  const BuildResult::Timings& timings = report.build.timings_ms;
+  return {{"read", report.reading_ms},
+          {"simplify", timings.simplify},
+          {"levels", timings.levels},
+          {"write", timings.write}};
 }
 
 /// Why a level is no coarser; for an error that stops what faces were asked for, the one that would have come next.
-std::string stopped_text(const BuildReport::Level& level, double diagonal) {
+std::string stopped_text(const BuildResult::Level& level, double diagonal) {
   if (!(level.deviation_beyond > 0)) return level.stopped_by;
   return level.stopped_by + ": " + percent_text(level.deviation_beyond, diagonal);
 }
 
-std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& level, double diagonal) {
+std::vector<std::string> row_of(std::size_t number, const BuildResult::Level& level, double diagonal) {
   return {std::to_string(number),
           std::to_string(level.face_count),
           std::to_string(level.vertex_count),
@@ -118,35 +127,35 @@ std::vector<std::string> row_of(std::size_t number, const BuildReport::Level& le
 
 Json report_json(const BuildReport& report) {
   Json levels = Json::array();
-  for (const BuildReport::Level& level : report.levels) levels.push_back(level_json(level));
+  for (const BuildResult::Level& level : report.build.levels) levels.push_back(level_json(level));
   Json left_out = Json::array();
-  for (const BuildReport::LeftOut& target : report.left_out) left_out.push_back(left_out_json(target));
+  for (const BuildResult::LeftOut& target : report.build.left_out) left_out.push_back(left_out_json(target));
   Json meshes = Json::array();
-  for (const BuildReport::MeshPart& part : report.meshes) meshes.push_back(part_json(part));
+  for (const BuildResult::MeshPart& part : report.build.meshes) meshes.push_back(part_json(part));
   return {{"schema_version", kReportSchemaVersion},
           {"tool", {{"name", "lodestone"}, {"version", LODESTONE_VERSION}}},
-          {"input", input_json(report.input)},
+          {"input", input_json(report)},
           {"settings", report.settings},
           {"levels", levels},
           {"left_out", left_out},
-          {"stream", stream_json(report.stream)},
+          {"stream", stream_json(report.build.stream)},
           {"meshes", meshes},
           {"output", output_json(report)},
-          {"timings_ms", timings_json(report.timings_ms)},
+          {"timings_ms", timings_json(report)},
           {"peak_memory_bytes", peak_memory_bytes()}};
 }
 
 void print_table(const BuildReport& report) {
   TextTable table({"level", "faces", "vertices", "max", "mean", "bytes", "stopped by"});
   const double diagonal = report.input.box.diagonal();
-  for (std::size_t i = 0; i < report.levels.size(); ++i) table.add(row_of(i, report.levels[i], diagonal));
+  for (std::size_t i = 0; i < report.build.levels.size(); ++i) table.add(row_of(i, report.build.levels[i], diagonal));
   table.print();
-  for (const BuildReport::LeftOut& left_out : report.left_out)
+  for (const BuildResult::LeftOut& left_out : report.build.left_out)
     if (left_out.met) std::printf("one level less: it would repeat level %zu\n", left_out.level);
-  if (report.stream.bytes > 0) {
-    std::printf("stream: %zu records in %zu rounds over a base of %zu faces, %llu bytes\n", report.stream.record_count,
-                report.stream.round_count, report.stream.base_face_count,
-                static_cast<unsigned long long>(report.stream.bytes));
+  if (report.build.stream.bytes > 0) {
+    std::printf("stream: %zu records in %zu rounds over a base of %zu faces, %llu bytes\n", report.build.stream.record_count,
+                report.build.stream.round_count, report.build.stream.base_face_count,
+                static_cast<unsigned long long>(report.build.stream.bytes));
   }
   for (const BuildReport::OutputFile& file : report.files)
     std::printf("%s: %llu bytes\n", file.path.c_str(), static_cast<unsigned long long>(file.bytes));

@@ -9,13 +9,12 @@
 
 namespace lodestone::tool {
 
-struct BuildResult {
+struct FinishedBuild {
   Outcome outcome = Outcome::Done;
   BuildReport report;  ///< complete only where the outcome is Done
 };
 
-/// Does what the options of `lodestone build` say of their input and output: reads, simplifies, measures levels, writes
-/// and reports. `progress` is at the beginning of this piece of the work. Errors: any; nothing is written then.
-Result<BuildResult> run_build(const BuildCommand& options, ProgressBar& progress);
+/// Does what a `lodestone build` asks for: reads, builds, writes and reports. `bar` is at the beginning of this piece of the work. Errors: any; nothing is written then.
+Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar);
 
 }  // namespace lodestone::tool

@@ -163,12 +163,12 @@ void CompareCommand::add_to(CLI::App& app) {
 Result<Outcome> CompareCommand::run() const {
   if (Result<void> paths = check_outputs(*this); !paths) return tl::unexpected(paths.error());
   ProgressBar progress(true);
-  progress.start("reading", 0.1);
+  progress.update("reading", 0);
   const Result<Surface> a = read_surface(first);
   if (!a) return tl::unexpected(a.error());
   const Result<Surface> b = read_surface(second);
   if (!b) return tl::unexpected(b.error());
-  progress.start("measuring", html || heatmap ? 0.5 : 0.9);
+  progress.update("measuring", 0.1);
   DeviationOptions how;
   how.sample_count = samples;
   const Deviation deviation = measure_deviation(a->mesh, b->mesh, how);
@@ -177,7 +177,7 @@ Result<Outcome> CompareCommand::run() const {
 
   StagedFiles files;
   if (html) {
-    progress.start("drawing", 0.4);
+    progress.update("drawing", 0.6);
     const Result<std::string> page = comparison_page(*a, *b, comparison, diagonal);
     if (!page) return tl::unexpected(page.error());
     if (Result<void> done = files.add(*html, *page); !done) return tl::unexpected(done.error());

@@ -11,11 +11,11 @@
 #include <lodestone/io/stream_format.h>
 #include <lodestone/io/write_mesh.h>
 #include <lodestone/lod/cursor.h>
+#include <lodestone/pipeline/scene_target.h>
 
 #include "asset_files.h"
 #include "input_files.h"
 #include "messages.h"
-#include "scene_target.h"
 #include "staged_file.h"
 #include "standard_streams.h"
 #include "text_table.h"

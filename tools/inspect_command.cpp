@@ -15,7 +15,6 @@
 #include "input_files.h"
 #include "json_text.h"
 #include "messages.h"
-#include "scene_totals.h"
 #include "text_table.h"
 
 namespace lodestone::tool {

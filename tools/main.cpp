@@ -44,6 +44,7 @@ ExitCode exit_code(ErrorCode code) {
     case ErrorCode::Unsupported:
       return ExitCode::Unsupported;
     case ErrorCode::NotWritten:
+    case ErrorCode::Cancelled:
       return ExitCode::NotWritten;
   }
   return ExitCode::Usage;

@@ -42,18 +42,13 @@ void ProgressBar::start_piece(std::string title, double begin, double end) {
   title_ = std::move(title);
   piece_begin_ = begin;
   piece_end_ = end;
-  stage_begin_ = stage_end_ = 0;
 }
 
-void ProgressBar::start(std::string stage, double share) {
-  stage_ = std::move(stage);
-  stage_begin_ = stage_end_;
-  stage_end_ += share;
-  if (shown_) draw(0);
-}
-
-void ProgressBar::update(double done) {
-  if (shown_ && std::chrono::steady_clock::now() - last_draw_ >= kRedrawInterval) draw(done);
+void ProgressBar::update(std::string_view stage, double done) {
+  if (!shown_) return;
+  const bool is_new = stage_ != stage;
+  stage_ = stage;
+  if (is_new || std::chrono::steady_clock::now() - last_draw_ >= kRedrawInterval) draw(done);
 }
 
 void ProgressBar::clear() {
@@ -61,14 +56,10 @@ void ProgressBar::clear() {
   drawn_ = false;
 }
 
-double ProgressBar::overall(double done) const {
-  const double of_piece = stage_begin_ + std::clamp(done, 0.0, 1.0) * (stage_end_ - stage_begin_);
-  return std::clamp(piece_begin_ + of_piece * (piece_end_ - piece_begin_), 0.0, 1.0);
-}
-
 void ProgressBar::draw(double done) {
   last_draw_ = std::chrono::steady_clock::now();
-  const double share = overall(done);
+  const double of_piece = std::clamp(done, 0.0, 1.0);
+  const double share = std::clamp(piece_begin_ + of_piece * (piece_end_ - piece_begin_), 0.0, 1.0);
   const int filled = static_cast<int>(share * kBarWidth);
   const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
   std::string left;
@@ -80,20 +71,6 @@ void ProgressBar::draw(double done) {
                stage_.c_str());
   std::fflush(stderr);
   drawn_ = true;
-}
-
-void SharedProgress::add_part(double weight) {
-  weight_.push_back(weight);
-  share_.push_back(0);
-  total_ += weight;
-}
-
-void SharedProgress::update(std::size_t part, double share) {
-  const std::scoped_lock lock(mutex_);
-  share_[part] = share;
-  double done = 0;
-  for (std::size_t i = 0; i < share_.size(); ++i) done += weight_[i] * share_[i];
-  bar_.update(total_ > 0 ? done / total_ : 1);
 }
 
 }  // namespace lodestone::tool

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <lodestone/core/result.h>
+#include <lodestone/pipeline/level_target.h>
 
-#include "level_target.h"
 
 namespace CLI {
 class App;

@@ -196,6 +196,13 @@ Mesh number_by_first_use(const TriangleSoup& soup, const CleanFaces& faces, cons
 
 }  // namespace
 
+AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b) {
+  return {a.nonfinite_faces + b.nonfinite_faces, a.degenerate_faces + b.degenerate_faces,
+          a.duplicate_faces + b.duplicate_faces, a.unused_points + b.unused_points,
+          a.turned_faces + b.turned_faces,       a.nonmanifold_edges + b.nonmanifold_edges,
+          a.cut_vertices + b.cut_vertices};
+}
+
 Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& options) {
   if (auto checked = check_lengths(soup); !checked) return tl::unexpected(checked.error());
   AssembledMesh result;

@@ -458,6 +458,11 @@ SimplifyResult Simplifier::run() {
 
 }  // namespace
 
+BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b) {
+  return {a.locked + b.locked, a.flip + b.flip,       a.link + b.link,  a.shape + b.shape,
+          a.ring + b.ring,     a.texture + b.texture, a.error + b.error};
+}
+
 Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options) {
   if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
   if (!options.importance.empty() && options.importance.size() != mesh.vertex_count())

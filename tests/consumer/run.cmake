@@ -15,3 +15,5 @@ run_step(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR}/build -G ${GENERATOR}
          -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
 run_step(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run_step(${WORK_DIR}/build/consumer ${WORK_DIR}/level.obj)
+run_step(${WORK_DIR}/build/build ${SOURCE_DIR}/../../demo/suzi.glb ${WORK_DIR}/suzi.glb)
+run_step(${WORK_DIR}/build/draw ${SOURCE_DIR}/../golden/stream-1.0.lds)

@@ -36,6 +36,9 @@ struct AssemblyReport {
   std::size_t cut_vertices = 0;       ///< vertices that became several, one for each sheet
 };
 
+/// Adds up what became of several meshes.
+AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b);
+
 struct AssembledMesh {
   Mesh mesh;
   AssemblyReport report;

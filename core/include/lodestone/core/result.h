@@ -17,6 +17,7 @@ enum class ErrorCode {
   LimitExceeded,    ///< a count or size beyond an explicit limit
   Unsupported,      ///< valid, but not handled by this version
   NotWritten,       ///< the output could not be written
+  Cancelled,        ///< the caller wanted no more
 };
 
 /// An error for a person to read: lower case, no full stop, naming the thing and its numbers.

@@ -25,6 +25,9 @@ struct BlockedCounts {
   std::size_t error = 0;     ///< free to go, but beyond a limit on the error
 };
 
+/// Adds up what kept the vertices of several meshes.
+BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b);
+
 struct SimplifyResult {
   ProgressiveMesh mesh;
   StopReason stop_reason = StopReason::Stuck;

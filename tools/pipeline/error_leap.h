@@ -4,7 +4,7 @@
 
 #include <lodestone/lod/progressive_mesh.h>
 
-namespace lodestone::tool {
+namespace lodestone::detail {
 
 /// What a level's error is compared with, in mesh units.
 struct LeapScale {
@@ -22,4 +22,4 @@ Index position_before_leap(const ProgressiveMesh& mesh, std::span<const Index> f
 /// Whether an error is so many times what a part would have by itself that it must come from the burden of others.
 bool is_burdened(double error, double error_alone, const LeapScale& scale);
 
-}  // namespace lodestone::tool
+}  // namespace lodestone::detail

@@ -3,11 +3,12 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <lodestone/lod/progressive_mesh.h>
 #include <lodestone/lod/simplify.h>
 
-namespace lodestone::tool {
+namespace lodestone {
 
 enum class TargetKind {
   Faces,    ///< at most so many faces
@@ -22,6 +23,9 @@ struct LevelTarget {
   bool relative = false;  ///< to the full face count (Faces) or to the bounding-box diagonal (Error)
   bool is_wish = false;   ///< of the default series: a level stops before its error leaps
 };
+
+/// Returns `count` targets, each of so many times the faces of the one before, that stop before their error leaps.
+std::vector<LevelTarget> ratio_targets(double ratio, int count);
 
 /// What relative targets are relative to.
 struct FullSize {
@@ -49,4 +53,4 @@ std::string_view name_of(StopReason reason);
 /// Returns the word reports and options use: faces, error or epsilon.
 std::string_view name_of(TargetKind kind);
 
-}  // namespace lodestone::tool
+}  // namespace lodestone

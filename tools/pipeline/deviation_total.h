@@ -1,10 +1,8 @@
 #pragma once
 
-#include <lodestone/core/assemble.h>
 #include <lodestone/lod/deviation.h>
-#include <lodestone/lod/simplify.h>
 
-namespace lodestone::tool {
+namespace lodestone::detail {
 
 /// Adds up the deviations of a scene's meshes: maxima are the largest, means and squares count by drawn area.
 class DeviationTotal {
@@ -26,7 +24,4 @@ class DeviationTotal {
   double area_ = 0;
 };
 
-AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b);
-BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b);
-
-}  // namespace lodestone::tool
+}  // namespace lodestone::detail

@@ -1,13 +1,15 @@
-#include "scene_target.h"
+#include <lodestone/pipeline/scene_target.h>
 
 #include <algorithm>
 #include <cmath>
 #include <queue>
 
-#include "error_leap.h"
+#include "pipeline/error_leap.h"
 
-namespace lodestone::tool {
+namespace lodestone {
 namespace {
+
+using namespace detail;
 
 /// Makes errors fall from coarse to fine: bounds of deviations alone need not.
 std::vector<double> falling(std::vector<double> errors) {
@@ -238,4 +240,4 @@ SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget
   return by_faces ? share_faces(parts, target, diagonal) : choose_each(parts, resolve(target, {0, diagonal}));
 }
 
-}  // namespace lodestone::tool
+}  // namespace lodestone

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace lodestone::tool {
+namespace lodestone::detail {
 
 /// Wall-clock time, lap by lap.
 class Stopwatch {
@@ -19,4 +19,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace lodestone::tool
+}  // namespace lodestone::detail

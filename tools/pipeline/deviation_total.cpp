@@ -1,10 +1,10 @@
-#include "scene_totals.h"
+#include "pipeline/deviation_total.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace lodestone::tool {
+namespace lodestone::detail {
 
 void DeviationTotal::OneSided::add(const OneSidedDeviation& other, double scale, double area) {
   largest.maximum = std::max(largest.maximum, other.maximum * scale);
@@ -35,16 +35,4 @@ Deviation DeviationTotal::result() const {
   return {forward_.result(area_), backward_.result(area_), angle_ / area_};
 }
 
-AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b) {
-  return {a.nonfinite_faces + b.nonfinite_faces, a.degenerate_faces + b.degenerate_faces,
-          a.duplicate_faces + b.duplicate_faces, a.unused_points + b.unused_points,
-          a.turned_faces + b.turned_faces,       a.nonmanifold_edges + b.nonmanifold_edges,
-          a.cut_vertices + b.cut_vertices};
-}
-
-BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b) {
-  return {a.locked + b.locked, a.flip + b.flip,       a.link + b.link,  a.shape + b.shape,
-          a.ring + b.ring,     a.texture + b.texture, a.error + b.error};
-}
-
-}  // namespace lodestone::tool
+}  // namespace lodestone::detail

@@ -8,10 +8,9 @@
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/progressive_mesh.h>
 #include <lodestone/lod/simplify.h>
+#include <lodestone/pipeline/level_target.h>
 
-#include "level_target.h"
-
-namespace lodestone::tool {
+namespace lodestone {
 
 /// A progressive mesh in a scene.
 struct ScenePart {
@@ -51,4 +50,4 @@ struct SceneChoice {
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal);
 
-}  // namespace lodestone::tool
+}  // namespace lodestone

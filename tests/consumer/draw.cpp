@@ -1,7 +1,6 @@
-// What an engine needs to draw from a removal stream, built without exceptions and run-time types: reads a stream, goes
-// to levels of it, and prints their faces.
+// Draws from a removal stream with lodestone::stream alone: reads it, goes to levels of it, and prints their faces.
 //
-//   runtime STREAM
+//   draw STREAM
 
 #include <cstddef>
 #include <cstdio>
@@ -9,10 +8,6 @@
 
 #include <lodestone/io/stream_format.h>
 #include <lodestone/lod/cursor.h>
-
-#if defined(__cpp_exceptions) || defined(__cpp_rtti)
-#error "this program is to be built with -fno-exceptions -fno-rtti"
-#endif
 
 namespace {
 

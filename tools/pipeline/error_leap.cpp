@@ -1,8 +1,8 @@
-#include "error_leap.h"
+#include "pipeline/error_leap.h"
 
 #include <algorithm>
 
-namespace lodestone::tool {
+namespace lodestone::detail {
 namespace {
 
 constexpr double kLeap = 8;               // of smooth surfaces the error doubles with half of the faces, of lines four times
@@ -30,4 +30,4 @@ bool is_burdened(double error, double error_alone, const LeapScale& scale) {
   return error > kBurden * error_alone && error > kNoticeable * scale.scene;
 }
 
-}  // namespace lodestone::tool
+}  // namespace lodestone::detail

@@ -1,9 +1,9 @@
-#include "level_target.h"
+#include <lodestone/pipeline/level_target.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace lodestone::tool {
+namespace lodestone {
 namespace {
 
 Index position_for(const ProgressiveMesh& mesh, const LevelTarget& target) {
@@ -21,6 +21,12 @@ Index position_for(const ProgressiveMesh& mesh, const LevelTarget& target) {
 }
 
 }  // namespace
+
+std::vector<LevelTarget> ratio_targets(double ratio, int count) {
+  std::vector<LevelTarget> targets;
+  for (int i = 1; i <= count; ++i) targets.push_back({TargetKind::Faces, std::pow(ratio, i), true, true});
+  return targets;
+}
 
 LevelTarget resolve(const LevelTarget& target, const FullSize& full) {
   if (!target.relative) return target;
@@ -69,4 +75,4 @@ std::string_view name_of(TargetKind kind) {
   return "unknown";
 }
 
-}  // namespace lodestone::tool
+}  // namespace lodestone

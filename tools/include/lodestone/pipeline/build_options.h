@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <lodestone/io/asset.h>
+#include <lodestone/lod/simplify_options.h>
+#include <lodestone/pipeline/importance.h>
+#include <lodestone/pipeline/level_target.h>
+#include <lodestone/pipeline/scene_target.h>
+
+namespace lodestone {
+
+/// Where a level's vertices lie.
+enum class Placement {
+  Optimised,  ///< fitted to the original; those of skinned and morphed meshes are a subset all the same
+  Subset,     ///< a subset of the original's, as in the stream
+};
+
+enum class FileLayout {
+  OneFile,       ///< all levels in one file, by MSFT_lod
+  FilePerLevel,  ///< a file for each level; none has a stream
+};
+
+/// What is built of a scene.
+struct BuildOptions {
+  /// The levels after the whole scene, all of one kind; they may come in any order.
+  std::vector<LevelTarget> targets = ratio_targets(0.5, 4);
+  TargetScope scope = TargetScope::Scene;
+  /// Of every mesh alike. The build itself sets `importance`, `stop`, `measure_step`, `progress` and the reach of
+  /// morph targets.
+  SimplifyOptions simplify;
+  Importance importance;
+  Placement placement = Placement::Optimised;
+  FileLayout layout = FileLayout::OneFile;
+  bool stream = true;        ///< write each mesh's removal stream, where there is one file
+  bool strict = false;       ///< stop before anything is encoded where a target cannot be met
+  bool keep_levels = false;  ///< keep the levels as the files have them: see `BuildResult::decoded`
+  /// How it is stored. The build itself sets `keep_decoded` and, where levels are by error, `draco_position_error`. With
+  /// a file for each level, level i's `gltf_name` ends in "_LODi".
+  AssetOptions storage;
+};
+
+}  // namespace lodestone

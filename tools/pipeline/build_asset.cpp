@@ -1,0 +1,184 @@
+// The build, stage by stage: each mesh is simplified to a stream, the levels of all are chosen together by what their
+// streams promise, extracted, fitted to the original, encoded, measured as they come out of the file, and written.
+
+#include <lodestone/pipeline/build_asset.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
+#include <lodestone/io/stream_format.h>
+
+#include "pipeline/build_progress.h"
+#include "pipeline/level_measure.h"
+#include "pipeline/level_plan.h"
+#include "pipeline/make_levels.h"
+#include "pipeline/simplify_scene.h"
+#include "pipeline/stopwatch.h"
+
+namespace lodestone {
+namespace {
+
+using namespace detail;
+
+/// Notes, each once, though several files may have it.
+class Notes {
+ public:
+  Notes(BuildResult& result, BuildObserver& observer) : notes_(result.notes), observer_(observer) {}
+
+  void add(const std::string& note) {
+    if (std::find(notes_.begin(), notes_.end(), note) != notes_.end()) return;
+    notes_.push_back(note);
+    observer_.note(note);
+  }
+
+ private:
+  std::vector<std::string>& notes_;
+  BuildObserver& observer_;
+};
+
+BuildResult::Stream stream_report(const SimplifyResult& simplified) {
+  const ProgressiveMesh& mesh = simplified.mesh;
+  const std::size_t round_count = mesh.round_begin.empty() ? 0 : mesh.round_begin.size() - 1;
+  return {0, mesh.record_count(), round_count, face_counts(mesh).front(), simplified.stop_reason, simplified.blocked};
+}
+
+void report_streams(const Scene& scene, BuildResult& result) {
+  BuildResult::Stream& total = result.stream;
+  for (std::size_t i = 0; i < result.simplified.size(); ++i) {
+    const SceneMesh& mesh = scene.meshes()[i];
+    const BuildResult::Stream stream = stream_report(result.simplified[i]);
+    result.meshes.push_back({mesh.name, mesh.instance_count, mesh.scale, mesh.assembly, stream, {}});
+    if (i == 0) total.stop_reason = stream.stop_reason;
+    if (total.stop_reason != stream.stop_reason) total.stop_reason = StopReason::Stuck;
+    total.record_count += stream.record_count;
+    total.round_count += stream.round_count;
+    total.base_face_count += stream.base_face_count * mesh.instance_count;
+    total.blocked = total.blocked + stream.blocked;
+  }
+}
+
+/// What is known of a level before it is measured.
+void report_level(const Scene& scene, const LevelPlan& plan, std::size_t number,
+                  const std::vector<LeveledMesh>& levels, BuildResult& result) {
+  const SceneChoice& choice = plan.choices[number];
+  BuildResult::Level entry;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const SceneMesh& mesh = scene.meshes()[i];
+    const AssetLevel& level = levels[i].levels[number];
+    const float bound = result.simplified[i].mesh.deviation[choice.positions[i]];
+    result.meshes[i].levels.push_back({level.mesh.face_count(), level.mesh.vertex_count(), {}, bound, {}});
+    entry.face_count += level.mesh.face_count() * mesh.instance_count;
+    entry.vertex_count += level.mesh.vertex_count() * mesh.instance_count;
+    entry.deviation_bound = std::max(entry.deviation_bound, bound * mesh.scale);
+    entry.curvature_error = std::max(entry.curvature_error, level.curvature_error);
+  }
+  if (number > 0) entry.target = choice.target;
+  entry.met = choice.met;
+  entry.stopped_by = choice.stopped_by;
+  entry.deviation_beyond = world_beyond(scene, choice);
+  result.levels.push_back(std::move(entry));
+}
+
+void report_plan(const Scene& scene, LevelPlan& plan, const std::vector<LeveledMesh>& levels, BuildResult& result) {
+  for (std::size_t i = 0; i < plan.level_count(); ++i) {
+    report_level(scene, plan, i, levels, result);
+    result.met = result.met && plan.choices[i].met;
+  }
+  for (const BuildResult::LeftOut& left_out : plan.left_out) result.met = result.met && left_out.met;
+  result.left_out = plan.left_out;
+  result.grid_error = plan.grid_error;
+}
+
+/// A mesh that is beyond the stream's limits goes without one; its levels do not need it.
+Result<void> encode_streams(const Scene& scene, std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes) {
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    Result<std::vector<std::byte>> stream = encode_stream(result.simplified[i].mesh);
+    if (!stream && stream.error().code != ErrorCode::LimitExceeded) return tl::unexpected(stream.error());
+    if (!stream) {
+      notes.add(text("mesh '", scene.meshes()[i].name, "' has no removal stream: ", stream.error().message));
+      continue;
+    }
+    result.meshes[i].stream.bytes = stream->size();
+    levels[i].stream = std::move(*stream);
+  }
+  return {};
+}
+
+void report_layout(const AssetLayout& layout, std::size_t first, BuildResult& result) {
+  for (std::size_t i = 0; i < layout.levels.size(); ++i)
+    result.levels[first + i].bytes = layout.levels[i].geometry_bytes;
+  result.stream.bytes += layout.stream_bytes;
+  result.quantisation_error = std::max(result.quantisation_error, layout.quantisation_error);
+  result.position_bits = std::max(result.position_bits, layout.position_bits);
+}
+
+void keep_levels(std::vector<std::vector<AssetLevel>>& meshes, BuildResult& result) {
+  result.decoded.resize(meshes.size());
+  for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
+    for (AssetLevel& level : meshes[mesh]) result.decoded[mesh].levels.push_back(std::move(level));
+}
+
+/// Encodes the levels that a file holds, measures them as they come out of it, and writes it with their numbers.
+Result<void> make_file(const Scene& scene, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
+                       const BuildOptions& options, const FileLevels& file, BuildResult& result, Notes& notes,
+                       BuildObserver& observer) {
+  Stopwatch stopwatch;
+  AssetOptions storage = storage_of(scene, options);
+  const bool is_one_level = options.layout == FileLayout::FilePerLevel;
+  if (is_one_level && !storage.gltf_name.empty()) storage.gltf_name += text("_LOD", file.first);
+  LODESTONE_TRY(EncodedGeometry geometry,
+                encode_geometry(scene, levels, storage, is_one_level ? std::optional(file.first) : std::nullopt));
+  result.timings_ms.write += stopwatch.lap_ms();
+  LODESTONE_CHECK(measure_levels(scene, plan, options, file, geometry.levels(), result, observer));
+  result.timings_ms.levels += stopwatch.lap_ms();
+  const double share = 1 / static_cast<double>(file.file_count), done = static_cast<double>(file.file);
+  if (!observer.progress(BuildStage::Writing, share * done)) return cancelled();
+  std::vector<std::vector<AssetLevel>> decoded;
+  if (options.keep_levels) decoded = geometry.levels();
+  LODESTONE_TRY(EncodedAsset asset, write_asset(std::move(geometry)));
+  keep_levels(decoded, result);
+  for (const std::string& note : asset.layout.notes) notes.add(note);
+  report_layout(asset.layout, file.first, result);
+  result.files.push_back(std::move(asset));
+  result.timings_ms.write += stopwatch.lap_ms();
+  if (!observer.progress(BuildStage::Writing, share * (done + 1))) return cancelled();
+  return {};
+}
+
+}  // namespace
+
+Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, BuildObserver& observer) {
+  BuildOptions options = given;
+  BuildResult result;
+  Notes notes(result, observer);
+  Stopwatch stopwatch;
+  LODESTONE_CHECK(check_names(options.importance, scene));
+  LODESTONE_CHECK(sort_finest_first(options.targets, scene));
+
+  LODESTONE_TRY(result.simplified, simplify_scene(scene, options, observer));
+  report_streams(scene, result);
+  result.timings_ms.simplify = stopwatch.lap_ms();
+
+  LevelPlan plan = plan_levels(scene, result.simplified, options);
+  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(scene, result.simplified, plan, options, observer));
+  report_plan(scene, plan, levels, result);
+  result.timings_ms.levels = stopwatch.lap_ms();
+  if (options.strict && !result.met) return result;
+
+  if (writes_streams(options)) LODESTONE_CHECK(encode_streams(scene, levels, result, notes));
+  result.timings_ms.write = stopwatch.lap_ms();
+  const std::size_t file_count = options.layout == FileLayout::FilePerLevel ? plan.level_count() : 1;
+  for (std::size_t i = 0; i < file_count; ++i)
+    LODESTONE_CHECK(make_file(scene, plan, levels, options, {i, file_count, i}, result, notes, observer));
+  return result;
+}
+
+Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& options) {
+  BuildObserver unobserved;
+  return build_asset(scene, options, unobserved);
+}
+
+}  // namespace lodestone

@@ -1,0 +1,77 @@
+#include "pipeline/make_levels.h"
+
+#include <utility>
+
+#include <lodestone/core/parallel.h>
+#include <lodestone/lod/cursor.h>
+#include <lodestone/lod/placement.h>
+
+#include "pipeline/build_progress.h"
+#include "pipeline/level_measure.h"
+
+namespace lodestone::detail {
+namespace {
+
+/// What one level of one mesh is made of.
+struct LevelSource {
+  const SceneMesh& whole;
+  const SimplifyResult& simplified;
+  const SceneChoice& choice;
+  std::size_t mesh = 0;
+};
+
+/// Says in a level why it is no coarser.
+void state_why(const SceneChoice& choice, std::size_t mesh, AssetLevel& level) {
+  level.stop_reason = choice.stopped_by;
+  level.deviation_beyond = choice.beyond.empty() ? 0 : choice.beyond[mesh];
+}
+
+AssetLevel make_level(const LevelSource& source, const BuildOptions& options) {
+  const Index position = source.choice.positions[source.mesh];
+  const ProgressiveMesh& progressive = source.simplified.mesh;
+  AssetLevel level;
+  level.curvature_error = progressive.curvature_error[position];
+  state_why(source.choice, source.mesh, level);
+  Cursor cursor(progressive);
+  cursor.seek(position);
+  level.mesh = extract_level(progressive, cursor);
+  // Vertices of skinned and morphed meshes take their weights and targets with them, so those stay where they are.
+  const bool fits = options.placement == Placement::Optimised && !source.whole.skinned && !source.whole.has_targets;
+  if (!fits || position == progressive.record_count()) return level;
+  PlacementOptions placement;
+  placement.fixed = source.simplified.locked;
+  Mesh fitted = optimise_placement(source.whole.mesh, level.mesh, placement);
+  const double bound = static_cast<double>(progressive.deviation[position]);
+  const bool is_limited = source.choice.target.kind == TargetKind::Error;
+  if (!is_limited || lies_within(source.whole.mesh, fitted, bound)) level.mesh = std::move(fitted);
+  return level;
+}
+
+}  // namespace
+
+Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified,
+                                             const LevelPlan& plan, const BuildOptions& options,
+                                             BuildObserver& observer) {
+  const std::size_t count = plan.level_count();
+  std::vector<LeveledMesh> meshes(simplified.size());
+  for (LeveledMesh& mesh : meshes) mesh.levels.resize(count);
+  StageProgress progress(observer, BuildStage::MakingLevels, std::vector<double>(meshes.size() * count, 1));
+  for_each_in_parallel(meshes.size() * count, [&](std::size_t i) {
+    const std::size_t mesh = i / count, level = i % count;
+    if (progress.is_cancelled()) return;
+    if (!plan.repeats(mesh, level))
+      meshes[mesh].levels[level] =
+          make_level({scene.meshes()[mesh], simplified[mesh], plan.choices[level], mesh}, options);
+    progress.update(i, 1);
+  });
+  if (progress.is_cancelled()) return cancelled();
+  for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
+    for (std::size_t level = 1; level < count; ++level) {
+      if (!plan.repeats(mesh, level)) continue;
+      meshes[mesh].levels[level] = meshes[mesh].levels[level - 1];
+      state_why(plan.choices[level], mesh, meshes[mesh].levels[level]);
+    }
+  return meshes;
+}
+
+}  // namespace lodestone::detail

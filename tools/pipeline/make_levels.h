@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pipeline/level_plan.h"
+
+namespace lodestone::detail {
+
+/// Extracts each mesh's levels from its stream and fits them to the original, unless an error was asked for that only
+/// the stream's level keeps to. Errors: Cancelled.
+Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified,
+                                             const LevelPlan& plan, const BuildOptions& options,
+                                             BuildObserver& observer);
+
+}  // namespace lodestone::detail
