@@ -151,6 +151,9 @@ class BuildRun {
   bool repeats(std::size_t mesh, std::size_t level) const;
   bool is_whole(std::size_t mesh, std::size_t level) const;
   void make_levels();
+  bool fits_levels(const SceneMesh& mesh) const;
+  Mesh fitted_to(std::size_t mesh, const Mesh& level) const;
+  double measured_error(std::size_t mesh, Index position) const;
   void make_mesh_level(LevelJob& job) const;
   void take_mesh_level(LevelJob&& job);
   void report_level(const SceneChoice& choice);
@@ -357,7 +360,7 @@ std::vector<ScenePart> BuildRun::parts() const {
     const SceneMesh& mesh = scene_->meshes()[i];
     parts.push_back({&simplified_[i].mesh, mesh.scale, mesh.instance_count, simplified_[i].stop_reason,
                      settings_.importance_of(mesh), world_charges(simplified_[i], mesh.scale),
-                     kBoxGrowth * displacements[i]});
+                     [this, i](Index position) { return measured_error(i, position); }, kBoxGrowth * displacements[i]});
   }
   return parts;
 }
@@ -426,6 +429,28 @@ void BuildRun::take_mesh_level(LevelJob&& job) {
   levels_[job.mesh].levels.push_back(std::move(job.made));
 }
 
+/// Vertices of skinned and morphed meshes take their weights and targets with them, so those stay where they are.
+bool BuildRun::fits_levels(const SceneMesh& mesh) const {
+  return options_.placement == "optimised" && !mesh.skinned && !mesh.has_targets;
+}
+
+Mesh BuildRun::fitted_to(std::size_t mesh, const Mesh& level) const {
+  PlacementOptions placement;
+  placement.fixed = simplified_[mesh].locked;
+  return optimise_placement(scene_->meshes()[mesh].mesh, level, placement);
+}
+
+/// What a level for a number of faces really deviates by, in mesh units, but for quantisation.
+double BuildRun::measured_error(std::size_t mesh, Index position) const {
+  const ProgressiveMesh& progressive = simplified_[mesh].mesh;
+  Cursor cursor(progressive);
+  cursor.seek(position);
+  Mesh level = extract_level(progressive, cursor);
+  const SceneMesh& source = scene_->meshes()[mesh];
+  if (fits_levels(source)) level = fitted_to(mesh, level);
+  return measure_maximum(source.mesh, SurfaceIndex(source.mesh), level, level_measure()).maximum_bound();
+}
+
 /// Extracts a level and fits it to the original, unless an error was asked for that only the stream's level keeps to.
 void BuildRun::make_mesh_level(LevelJob& job) const {
   const Index position = choices_[job.level].positions[job.mesh];
@@ -436,12 +461,8 @@ void BuildRun::make_mesh_level(LevelJob& job) const {
   Cursor cursor(progressive);
   cursor.seek(position);
   level.mesh = extract_level(progressive, cursor);
-  // Vertices of skinned and morphed meshes take their weights and targets with them, so those stay where they are.
-  const bool fits = options_.placement == "optimised" && !source.skinned && !source.has_targets;
-  if (!fits || is_whole(job.mesh, job.level)) return;
-  PlacementOptions placement;
-  placement.fixed = simplified_[job.mesh].locked;
-  Mesh fitted = optimise_placement(source.mesh, level.mesh, placement);
+  if (!fits_levels(source) || is_whole(job.mesh, job.level)) return;
+  Mesh fitted = fitted_to(job.mesh, level.mesh);
   const double bound = static_cast<double>(progressive.deviation[position]);
   const bool is_limited = choices_[job.level].target.kind == TargetKind::Error;
   if (!is_limited || lies_within(source.mesh, fitted, bound)) level.mesh = std::move(fitted);
@@ -518,9 +539,9 @@ bool BuildRun::report_missed_targets() const {
   std::string levels, targets, faces;
   double beyond = 0;
   for (std::size_t i = 0; i < report_.levels.size(); ++i) {
-    std::string missed;
+    std::string missed, last;
     const auto miss = [&](const LevelTarget& target, double deviation_beyond) {
-      append_item(missed, target_text(target));
+      if (const std::string text = target_text(target); text != last) append_item(missed, last = text);
       beyond = std::max(beyond, deviation_beyond);
     };
     const BuildReport::Level& level = report_.levels[i];
