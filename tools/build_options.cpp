@@ -1,4 +1,4 @@
-#include "build_options.h"
+#include <lodestone/pipeline/build_options.h>
 
 #include <map>
 #include <numbers>

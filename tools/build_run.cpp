@@ -138,9 +138,9 @@ std::string missed_targets(const BuildReport& report, const BuildCommand& option
   double beyond = 0;
   std::optional<TargetKind> kind;
   for (std::size_t i = 0; i < report.build.levels.size(); ++i) {
-    std::string missed;
+    std::string missed, last;
     const auto miss = [&](const LevelTarget& target, double deviation_beyond) {
-      append_item(missed, target_text(target));
+      if (const std::string text = target_text(target); text != last) append_item(missed, last = text);
       beyond = std::max(beyond, deviation_beyond);
       kind = target.kind;
     };

@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
+#include <lodestone/io/screen_coverage.h>
+
 #include "messages.h"
 
 namespace lodestone::tool {
 namespace {
-
-constexpr double kUsualHeight = 1080;  // pixels of a screen, where `1px` names none
 
 /// What one of a unit is.
 struct UnitSize {
@@ -58,7 +58,7 @@ std::optional<double> read_height(std::string_view text) {
 std::optional<UnitSize> read_unit(std::string_view text) {
   if (text.starts_with("px")) {
     const std::string_view screen = trimmed(text.substr(2));
-    const auto height = screen.empty()     ? kUsualHeight
+    const auto height = screen.empty()     ? kScreenHeight
                         : screen[0] == '@' ? read_height(trimmed(screen.substr(1)))
                                            : std::nullopt;
     if (!height) return std::nullopt;

@@ -76,7 +76,7 @@ std::vector<ScenePart> parts_of(const StreamedScene& streamed) {
   std::vector<ScenePart> parts;
   for (std::size_t i = 0; i < streamed.meshes.size(); ++i) {
     const SceneMesh& mesh = streamed.scene.meshes()[streamed.meshes[i]];
-    parts.push_back({&streamed.progressive[i], mesh.scale, mesh.instance_count, StopReason::Stuck, 1, {}, 0});
+    parts.push_back({&streamed.progressive[i], mesh.scale, mesh.instance_count, StopReason::Stuck, 1, {}, {}, 0});
   }
   return parts;
 }

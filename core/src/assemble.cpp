@@ -41,6 +41,9 @@ Result<void> check_lengths(const TriangleSoup& soup) {
   if (!soup.face_material.empty() && soup.face_material.size() != soup.indices.size() / 3)
     return fail(ErrorCode::InvalidArgument, "material count " + std::to_string(soup.face_material.size()) +
                                                 " differs from face count " + std::to_string(soup.indices.size() / 3));
+  if (!soup.point_sheet.empty() && soup.point_sheet.size() != soup.positions.size())
+    return fail(ErrorCode::InvalidArgument, "sheet count " + std::to_string(soup.point_sheet.size()) +
+                                                " differs from point count " + std::to_string(soup.positions.size()));
   for (const Attribute& attribute : soup.attributes)
     if (attribute.component_count == 0 || attribute.data.size() != attribute.element_bytes() * soup.positions.size())
       return fail(ErrorCode::InvalidArgument, "attribute " + attribute.name + " has " +
@@ -99,6 +102,22 @@ std::vector<Index> weld_wedges(const TriangleSoup& soup, const std::vector<Index
   return first_wedge;
 }
 
+/// Maps each used point to the first used one of the same wedge and sheet.
+std::vector<Index> weld_sheets(const TriangleSoup& soup, const std::vector<Index>& corners,
+                               const std::vector<Index>& first_wedge) {
+  if (soup.point_sheet.empty()) return first_wedge;
+  std::vector<Index> first(soup.positions.size(), kNoIndex);
+  HashIndex table(soup.positions.size());
+  for (const Index point : corners) {
+    if (first[point] != kNoIndex) continue;
+    const std::uint64_t hash = mix_bits(mix_bits(first_wedge[point]) + soup.point_sheet[point]);
+    first[point] = table.find_or_insert(hash, point, [&](Index other) {
+      return first_wedge[other] == first_wedge[point] && soup.point_sheet[other] == soup.point_sheet[point];
+    });
+  }
+  return first;
+}
+
 /// The triangles that remain, as points.
 struct CleanFaces {
   std::vector<Index> corners;
@@ -150,12 +169,12 @@ void drop_degenerate(CleanFaces& faces, const std::vector<Index>& first_point, A
 }
 
 /// A face that differs from another in any attribute, or in its material, is a sheet of its own on the same place.
-void drop_duplicates(CleanFaces& faces, const std::vector<Index>& first_wedge, AssemblyReport& report) {
-  std::vector<std::array<Index, 4>> seen;  // wedges and material
+void drop_duplicates(CleanFaces& faces, const std::vector<Index>& first_same, AssemblyReport& report) {
+  std::vector<std::array<Index, 4>> seen;  // corners and material
   HashIndex table(faces.corners.size() / 3);
   filter_faces(faces, [&](Index f) {
     const Index* c = &faces.corners[3 * std::size_t{f}];
-    const auto face = rotated_to_smallest({first_wedge[c[0]], first_wedge[c[1]], first_wedge[c[2]]});
+    const auto face = rotated_to_smallest({first_same[c[0]], first_same[c[1]], first_same[c[2]]});
     const std::array<Index, 4> key{face[0], face[1], face[2], faces.material.empty() ? 0 : faces.material[f]};
     const std::uint64_t hash = mix_bits(mix_bits(mix_bits(mix_bits(key[0]) + key[1]) + key[2]) + key[3]);
     const auto candidate = static_cast<Index>(seen.size());
@@ -211,7 +230,7 @@ Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& 
   const std::vector<Index> first_point = weld_positions(soup, faces.corners);
   drop_degenerate(faces, first_point, report);
   const std::vector<Index> first_wedge = weld_wedges(soup, faces.corners, first_point);
-  drop_duplicates(faces, first_wedge, report);
+  drop_duplicates(faces, weld_sheets(soup, faces.corners, first_wedge), report);
   result.mesh = number_by_first_use(soup, faces, first_point, first_wedge);
 
   std::vector<bool> used(soup.positions.size(), false);

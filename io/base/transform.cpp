@@ -8,13 +8,13 @@ namespace {
 
 Vec3 row(const Transform& t, int i) { return {t.rows[i][0], t.rows[i][1], t.rows[i][2]}; }
 
-Vec3f to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 Vec3 apply_linear(const Transform& t, const Vec3& v) {
   return {dot(row(t, 0), v), dot(row(t, 1), v), dot(row(t, 2), v)};
 }
 
 }  // namespace
+
+Vec3f to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
 Transform operator*(const Transform& a, const Transform& b) {
   Transform product;

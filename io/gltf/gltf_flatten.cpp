@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <unordered_map>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
@@ -15,6 +16,8 @@
 #include "gltf/gltf_primitive.h"
 #include "gltf/gltf_scene.h"
 #include "gltf/gltf_skin.h"
+#include "gltf/morph_range.h"
+#include "gltf/morph_targets.h"
 
 namespace lodestone::detail {
 namespace {
@@ -23,15 +26,11 @@ namespace {
 constexpr std::size_t kMaxCorners = 300'000'000;
 
 // Extensions that are decoded, and those that have no say in where triangles are.
-constexpr std::array<std::string_view, 9> kKnownExtensions = {"KHR_draco_mesh_compression",
-                                                              "KHR_mesh_quantization",
-                                                              "EXT_meshopt_compression",
-                                                              "KHR_meshopt_compression",
-                                                              "MSFT_lod",
-                                                              "KHR_lights_punctual",
-                                                              "KHR_animation_pointer",
-                                                              "KHR_xmp_json_ld",
-                                                              "LODESTONE_removal_stream"};
+constexpr std::array<std::string_view, 10> kKnownExtensions = {
+    "KHR_draco_mesh_compression", "EXT_mesh_gpu_instancing", "KHR_mesh_quantization",
+    "EXT_meshopt_compression",    "KHR_meshopt_compression", "MSFT_lod",
+    "KHR_lights_punctual",        "KHR_animation_pointer",   "KHR_xmp_json_ld",
+    "LODESTONE_removal_stream"};
 constexpr std::array<std::string_view, 6> kKnownPrefixes = {"KHR_materials_", "KHR_texture_",  "EXT_texture_",
                                                             "EXT_lights_",    "MSFT_texture_", "MSFT_packing_"};
 
@@ -128,6 +127,27 @@ void append_attributes(std::vector<Attribute>& attributes, const Primitive& prim
   }
 }
 
+/// Adds a number for each point: points of one are alike in all that is left out, too, and no other primitive or
+/// instance has it.
+void append_sheets(TriangleSoup& soup, const Primitive& primitive, std::size_t first) {
+  const auto is_left_out = [&](const Attribute& a) {
+    return std::none_of(soup.attributes.begin(), soup.attributes.end(),
+                        [&](const auto& b) { return a.name == b.name; });
+  };
+  std::vector<const Attribute*> left_out;
+  for (const Attribute& a : primitive.attributes)
+    if (is_left_out(a)) left_out.push_back(&a);
+  for (const Attribute& a : primitive.targets) left_out.push_back(&a);
+  std::unordered_map<std::string, Index> sheets;
+  std::string bytes;
+  for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
+    bytes.clear();
+    for (const Attribute* a : left_out)
+      bytes.append(reinterpret_cast<const char*>(a->data.data()) + i * a->element_bytes(), a->element_bytes());
+    soup.point_sheet.push_back(sheets.try_emplace(bytes, static_cast<Index>(first + sheets.size())).first->second);
+  }
+}
+
 Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, const Placement& placement) {
   const std::size_t first = soup.positions.size();
   if (first + primitive.positions.size() > kMaxCorners || soup.indices.size() + primitive.indices.size() > kMaxCorners)
@@ -135,6 +155,7 @@ Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, co
   for (std::size_t i = 0; i < primitive.positions.size(); ++i)
     soup.positions.push_back(placement.at(i).point(primitive.positions[i]));
   append_attributes(soup.attributes, primitive, placement);
+  append_sheets(soup, primitive, first);
   const bool mirrored = placement.mirrors();
   for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
     const Index a = primitive.indices[i], b = primitive.indices[i + 1], c = primitive.indices[i + 2];
@@ -144,6 +165,73 @@ Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, co
   }
   return {};
 }
+
+/// Moves directions as floats; those of tangents have a fourth component, which stays.
+void morph_directions(Attribute& attribute, const MorphTargets& targets, std::span<const float> weights) {
+  const std::size_t stride = attribute.element_bytes();
+  if (attribute.component_count < 3 || targets.count_shown(weights) == 0) return;
+  std::vector<Vec3> vectors;
+  for (std::size_t at = 0; at < attribute.data.size(); at += stride) {
+    Vec3f vector;
+    std::memcpy(&vector, attribute.data.data() + at, sizeof vector);
+    vectors.push_back(Vec3(vector));
+  }
+  targets.move(vectors, weights);
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const Vec3f vector = to_float(normalized(vectors[i]));
+    std::memcpy(attribute.data.data() + i * stride, &vector, sizeof vector);
+  }
+}
+
+Primitive morphed(Primitive primitive, const MorphTargets& targets, std::span<const float> weights) {
+  std::vector<Vec3> points;
+  for (const Vec3f& p : primitive.positions) points.push_back(Vec3(p));
+  targets.move(points, weights);
+  for (std::size_t i = 0; i < points.size(); ++i) primitive.positions[i] = to_float(points[i]);
+  for (Attribute& attribute : primitive.attributes)
+    if (attribute.name == "NORMAL" || attribute.name == "TANGENT")
+      morph_directions(attribute, MorphTargets(primitive.targets, attribute.name), weights);
+  return primitive;
+}
+
+/// Shows meshes at the weights of their morph targets at rest; copies of one node follow on one another.
+class RestMorph {
+ public:
+  explicit RestMorph(const GltfDocument& document) : document_(document) {}
+
+  /// The result is valid until the next call.
+  Result<std::span<const Primitive>> primitives_of(const MeshInstance& instance,
+                                                   std::span<const Primitive> primitives) {
+    if (instance.node == node_ && instance.node != kNoNode) return morphed_.empty() ? primitives : morphed_;
+    node_ = instance.node;
+    morphed_.clear();
+    if (std::all_of(primitives.begin(), primitives.end(), [](const Primitive& p) { return p.targets.empty(); }))
+      return primitives;
+    const auto node = document_.element("nodes", "node", node_);
+    const TargetWeights weights = weights_at_rest(document_, node ? **node : Json(), instance.mesh);
+    const auto is_moved = [&](const Primitive& p) { return MorphTargets(p.targets).count_shown(weights) > 0; };
+    LODESTONE_CHECK(spend(weights.size()));
+    if (std::none_of(primitives.begin(), primitives.end(), is_moved)) return primitives;
+    for (const Primitive& primitive : primitives) {
+      const MorphTargets targets(primitive.targets);
+      LODESTONE_CHECK(spend(primitive.positions.size() * targets.count_shown(weights)));
+      morphed_.push_back(morphed(primitive, targets, weights));
+    }
+    return morphed_;
+  }
+
+ private:
+  Result<void> spend(std::size_t points) {
+    spent_ += points;
+    if (spent_ <= kMaxCorners) return {};
+    return fail(ErrorCode::LimitExceeded, text("gltf: morph targets move more than ", kMaxCorners, " points"));
+  }
+
+  const GltfDocument& document_;
+  std::size_t node_ = kNoNode;
+  std::vector<Primitive> morphed_;
+  std::size_t spent_ = 0;
+};
 
 using Joints = std::map<std::size_t, std::vector<Transform>>;  // by skin
 
@@ -175,7 +263,7 @@ std::vector<std::string> note_left_out(const GltfDocument& document, const Primi
       notes.push_back(text(count, ' ', count == 1 ? one : many, count == 1 ? " is" : " are", " left out", rest));
   };
   note(omissions.points_and_lines, "primitive of points or lines", "primitives of points or lines");
-  note(omissions.morph_targets, "morph target", "morph targets");
+  note(omissions.morph_targets, "morph target", "morph targets", "; meshes are as their weights at rest have them");
   note(document.count("skins"), "skin", "skins",
        ", with joints and weights; skinned meshes stand in the pose of their nodes");
   note(document.count("animations"), "animation", "animations");
@@ -204,11 +292,14 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
 
   SoupFile file;
   file.soup.attributes = std::move(common.layouts);
-  for (const MeshInstance& instance : instances)
-    for (const Primitive& primitive : meshes[instance.mesh]) {
+  RestMorph morph(document);
+  for (const MeshInstance& instance : instances) {
+    LODESTONE_TRY(const auto primitives, morph.primitives_of(instance, meshes[instance.mesh]));
+    for (const Primitive& primitive : primitives) {
       if (primitive.indices.empty()) continue;
       LODESTONE_CHECK(append_primitive(file.soup, primitive, {primitive, instance.world, joints[instance.skin]}));
     }
+  }
   auto& materials = file.soup.face_material;
   if (std::all_of(materials.begin(), materials.end(), [](Index m) { return m == 0; })) materials.clear();
   file.notes = note_left_out(document, reader.omissions());
@@ -218,14 +309,14 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
   return file;
 }
 
-Result<void> check_required_extensions(const GltfDocument& document, std::string_view understood) {
+Result<void> check_required_extensions(const GltfDocument& document) {
   const Json* required = find_member(document.json(), "extensionsRequired");
   if (required == nullptr) return {};
   if (!required->is_array()) return fail(ErrorCode::Malformed, "gltf: extensionsRequired is not an array");
   std::string unknown;
   for (const Json& item : *required) {
     const std::string name = item.is_string() ? item.get<std::string>() : "?";
-    if (!is_known(name) && name != understood) unknown += (unknown.empty() ? "" : ", ") + name;
+    if (!is_known(name)) unknown += (unknown.empty() ? "" : ", ") + name;
   }
   if (unknown.empty()) return {};
   return fail(ErrorCode::Unsupported, text("gltf: requires extensions that are not supported: ", unknown));

@@ -15,14 +15,15 @@ namespace lodestone::detail {
 ///
 /// Attributes that every primitive has in the same layout are kept; NORMAL and TANGENT are floats and turn with their
 /// node. Faces of one document material share a number: material + 1, 0 for none. A mirrored node's faces change their
-/// winding. Notes say what was left out of the triangles read.
+/// winding. Skins and morph targets are as they are at rest. Faces are duplicates only of those that the same instance
+/// of a primitive draws, where all attributes agree, those that are left out, too. Notes say what was left out of the
+/// triangles read.
 Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level);
 
 /// Reads the finest level of a glTF as `flatten_scene` joins it. Errors: as those of GltfDocument, and Unsupported.
 Result<SoupFile> read_gltf(std::span<const std::byte> bytes, const FileFetcher& fetch);
 
 /// Returns an error for an extension that the document requires and that we would misread it without.
-/// `understood` names one more that is no obstacle to the caller.
-Result<void> check_required_extensions(const GltfDocument& document, std::string_view understood = {});
+Result<void> check_required_extensions(const GltfDocument& document);
 
 }  // namespace lodestone::detail

@@ -14,6 +14,9 @@
 namespace lodestone::detail {
 namespace {
 
+// How often a mesh may have all that its file can hold.
+constexpr std::size_t kMostCopies = 8;
+
 enum Mode : std::size_t { kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6 };
 
 const Json* draco_extension(const Json& primitive) {
@@ -134,6 +137,7 @@ std::string target_attribute_name(std::size_t target, const std::string& semanti
 
 Result<std::vector<Primitive>> PrimitiveReader::read_mesh(std::size_t mesh) {
   accessors_.clear();
+  bytes_ = 0;
   LODESTONE_TRY(const Json* const json, document_.element("meshes", "mesh", mesh));
   const Json* list = find_member(*json, "primitives");
   if (list == nullptr || !list->is_array())
@@ -162,9 +166,10 @@ Result<std::vector<Primitive>> PrimitiveReader::read_mesh(std::size_t mesh) {
 }
 
 Result<void> PrimitiveReader::add_attribute(Primitive& primitive, const std::string& name, const AccessorData& data,
-                                            const std::string& where) const {
+                                            const std::string& where) {
   if (name == "POSITION") return {};
   LODESTONE_CHECK(check_attribute(primitive, name, data, where));
+  LODESTONE_CHECK(spend(data.bytes.size(), where));
   primitive.attributes.push_back(to_attribute(name, data, content_));
   return {};
 }
@@ -173,10 +178,7 @@ Result<void> PrimitiveReader::add_targets(Primitive& primitive, const Json& json
   const Json* targets = find_member(json, "targets");
   if (targets == nullptr) return {};
   if (!targets->is_array()) return fail(ErrorCode::Malformed, where + ": targets is not an array");
-  if (content_ == PrimitiveContent::Surface) {
-    omissions_.morph_targets += targets->size();
-    return {};
-  }
+  omissions_.morph_targets += targets->size();
   for (std::size_t i = 0; i < targets->size(); ++i) {
     const Json& target = (*targets)[i];
     const std::string target_where = text(where, " target ", i);
@@ -185,6 +187,7 @@ Result<void> PrimitiveReader::add_targets(Primitive& primitive, const Json& json
       LODESTONE_TRY(const std::size_t index, size_member(target, semantic.c_str(), target_where));
       LODESTONE_TRY(const AccessorData* const data, accessor(index));
       LODESTONE_CHECK(check_attribute(primitive, semantic, *data, target_where));
+      LODESTONE_CHECK(spend(data->count * data->component_count * sizeof(float), where));
       primitive.targets.push_back(
           float_attribute(target_attribute_name(i, semantic), data->component_count, to_floats(*data)));
     }
@@ -197,6 +200,14 @@ Result<const AccessorData*> PrimitiveReader::accessor(std::size_t index) {
   if (known != accessors_.end()) return &known->second;
   LODESTONE_TRY(AccessorData data, document_.accessor(index));
   return &accessors_.emplace(index, std::move(data)).first->second;
+}
+
+Result<void> PrimitiveReader::spend(std::size_t bytes, const std::string& where) {
+  bytes_ += bytes;
+  const std::size_t limit = kMostCopies * document_.expansion_limit();
+  if (bytes_ <= limit) return {};
+  return fail(ErrorCode::LimitExceeded, text(where, ": attributes and morph targets of more than ", limit,
+                                             " bytes are more than can come from this file"));
 }
 
 Result<Primitive> PrimitiveReader::read_plain(const Json& json, std::size_t mode, const std::string& where) {

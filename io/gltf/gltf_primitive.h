@@ -22,10 +22,10 @@ struct Primitive {
   std::size_t number = 0;             ///< its place among the mesh's primitives
 };
 
-/// Which attributes are read, and how.
+/// How attributes are read. Morph targets are floats in any case, under names like "TARGET_0:POSITION".
 enum class PrimitiveContent {
-  Surface,  ///< NORMAL and TANGENT as floats, the others as the file stores them; no morph targets
-  Whole,    ///< all as the file stores them, and morph targets as floats under names like "TARGET_0:POSITION"
+  Surface,  ///< NORMAL and TANGENT as floats, the others as the file stores them
+  Whole,    ///< all as the file stores them
 };
 
 /// Returns the attribute that carries a morph target's member; the same for every writer and reader of scenes.
@@ -34,10 +34,11 @@ std::string target_attribute_name(std::size_t target, const std::string& semanti
 /// What primitives hold that is not read.
 struct PrimitiveOmissions {
   std::size_t points_and_lines = 0;  ///< primitives
-  std::size_t morph_targets = 0;     ///< of all primitives
+  std::size_t morph_targets = 0;     ///< of all primitives; they are read for the shape at rest
 };
 
-/// Reads primitives of a document; keeps decoded accessors while several primitives of a mesh share them.
+/// Reads primitives of a document; keeps decoded accessors while several primitives of a mesh share them. A file that
+/// names one accessor again and again cannot have any amount of memory.
 class PrimitiveReader {
  public:
   explicit PrimitiveReader(const GltfDocument& document, PrimitiveContent content = PrimitiveContent::Surface)
@@ -52,13 +53,15 @@ class PrimitiveReader {
   Result<Primitive> read_plain(const Json& json, std::size_t mode, const std::string& where);
   Result<Primitive> read_draco(const Json& json, const Json& extension, std::size_t mode, const std::string& where);
   Result<void> add_attribute(Primitive& primitive, const std::string& name, const AccessorData& data,
-                             const std::string& where) const;
+                             const std::string& where);
   Result<void> add_targets(Primitive& primitive, const Json& json, const std::string& where);
   Result<const AccessorData*> accessor(std::size_t index);
+  Result<void> spend(std::size_t bytes, const std::string& where);
 
   const GltfDocument& document_;
   PrimitiveContent content_;
   std::map<std::size_t, AccessorData> accessors_;
+  std::size_t bytes_ = 0;  // of the mesh's attributes and targets
   PrimitiveOmissions omissions_;
 };
 

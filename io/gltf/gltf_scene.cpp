@@ -7,8 +7,13 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "gltf/gltf_instancing.h"
+
 namespace lodestone::detail {
 namespace {
+
+// Nodes may share the numbers that say where their copies are.
+constexpr std::size_t kMaxInstances = 4'000'000;
 
 Result<std::vector<std::size_t>> lower_levels(const Json& node, std::string_view where) {
   const Json* extension = GltfDocument::extension(node, "MSFT_lod");
@@ -163,14 +168,25 @@ class Walk {
     const Transform world = parent * local.transform();
     if (find_member(*node, "mesh") != nullptr) {
       LODESTONE_TRY(const std::size_t mesh, size_member(*node, "mesh", where));
-      std::size_t skin = kNoSkin;
-      if (find_member(*node, "skin") != nullptr) {
-        LODESTONE_TRY(skin, size_member(*node, "skin", where));
-      }
-      instances_.push_back({index, mesh, skin, skin == kNoSkin ? world : Transform{}});
+      LODESTONE_CHECK(add_instances(index, *node, mesh, world));
     }
     const auto& children = graph_.children[index];
     for (auto child = children.rbegin(); child != children.rend(); ++child) stack_.push_back({*child, world});
+    return {};
+  }
+
+  Result<void> add_instances(std::size_t index, const Json& node, std::size_t mesh, const Transform& world) {
+    const std::string where = text("node ", index);
+    if (find_member(node, "skin") != nullptr) {
+      LODESTONE_TRY(const std::size_t skin, size_member(node, "skin", where));
+      instances_.push_back({index, mesh, skin, Transform{}});
+      return {};
+    }
+    LODESTONE_TRY(const auto copies, read_copies(document_, node, where));
+    if (copies.size() > kMaxInstances - std::min(kMaxInstances, instances_.size()))
+      return fail(ErrorCode::LimitExceeded,
+                  text("gltf: the scene has more than ", kMaxInstances, " instances of meshes"));
+    for (const Transform& copy : copies) instances_.push_back({index, mesh, kNoSkin, world * copy});
     return {};
   }
 

@@ -31,7 +31,7 @@ Result<std::size_t> level_count(const GltfDocument& document);
 /// Lists the meshes of the default scene (else of the first; else of all root nodes; else, without any node, all
 /// meshes), in the order of a walk from the roots. A node with MSFT_lod is replaced by that of its level `level`, 0
 /// being the finest, or by its last where it has fewer. A skinned mesh stands where its joints say: glTF ignores the
-/// transform of its node.
+/// transform of its node. What EXT_mesh_gpu_instancing copies is there once for each copy.
 /// Errors: Malformed for nodes that do not exist, have two parents or are their own ancestors.
 Result<std::vector<MeshInstance>> collect_instances(const GltfDocument& document, std::size_t level);
 

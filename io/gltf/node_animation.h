@@ -42,7 +42,8 @@ struct Animation {
 /// numbers than `most_numbers`, which goes down by what is read.
 Animation read_animation(const GltfDocument& document, std::size_t index, std::size_t& most_numbers);
 
-/// The value of a curve that is farthest from 0, of one of its numbers, and when it is reached: between key frames, too.
+/// The value of a curve that is farthest from 0, of one of its numbers, and when it is reached: between key frames,
+/// too.
 struct CurvePeak {
   double value = 0;  ///< without its sign
   float time = 0;

@@ -38,7 +38,8 @@ class FileNames {
     const std::string own = string_member(image, "name");
     const bool usable =
         !own.empty() && own.size() <= 100 && own[0] != '.' && std::all_of(own.begin(), own.end(), is_plain_letter);
-    const std::string stem = usable ? own : text(name_, "_image", number);
+    std::string stem = usable ? own : text(name_, "_image", number);
+    if (stem.ends_with(extension)) stem.resize(stem.size() - extension.size());
     if (take(stem + extension)) return stem + extension;
     for (int serial = 2;; ++serial)
       if (const std::string path = text(stem, '_', serial, extension); take(path)) return path;

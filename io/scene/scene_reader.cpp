@@ -114,7 +114,7 @@ Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetche
     return file;
   };
   LODESTONE_TRY(scene->document, GltfDocument::parse(bytes, fetch));
-  LODESTONE_CHECK(check_required_extensions(scene->document, "EXT_mesh_gpu_instancing"));
+  LODESTONE_CHECK(check_required_extensions(scene->document));
   if (levels == Levels::Refused) {
     LODESTONE_CHECK(refuse_levels(scene->document));
   } else {

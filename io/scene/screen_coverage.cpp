@@ -7,10 +7,9 @@
 namespace lodestone {
 namespace {
 
-constexpr double kPixels = 1080;          // the screen's height
-constexpr double kLargest = 0.95;         // the finest level must be seen somewhere
-constexpr double kSmallest = 0.1 / 1080;  // an object of a tenth of a pixel is as good as gone
-constexpr double kLeastFall = 0.98;       // of two values in a row, well above what readers' floats can tell
+constexpr double kLargest = 0.95;                  // the finest level must be seen somewhere
+constexpr double kSmallest = 0.1 / kScreenHeight;  // an object of a tenth of a pixel is as good as gone
+constexpr double kLeastFall = 0.98;                // of two values in a row, well above what readers' floats can tell
 
 /// Lets each value be less than the one before: those behind are the ones to trust, but for the screen's own limits.
 void make_fall(std::vector<double>& values) {
@@ -33,7 +32,7 @@ double visible_error(const LevelLook& level) {
 std::vector<double> screen_coverages(double size, std::span<const double> visible_errors) {
   std::vector<double> values;
   for (std::size_t i = 1; i < visible_errors.size(); ++i) {
-    const double share = size / (kPixels * visible_errors[i]);
+    const double share = size / (kScreenHeight * visible_errors[i]);
     values.push_back(std::isnan(share) ? kSmallest : std::clamp(share, kSmallest, kLargest));
   }
   make_fall(values);

@@ -281,6 +281,19 @@ TEST_CASE("turning faces never makes more cuts, nor loses a face") {
   }
 }
 
+TEST_CASE("faces of different sheets are no duplicates, though no attribute tells them apart") {
+  TriangleSoup twice = layered(torus(8, 6), 2);
+  twice.face_material.clear();
+  const std::size_t points = twice.positions.size();
+  twice.point_sheet.assign(points, 7);
+  CHECK(assemble(twice)->report.duplicate_faces == twice.indices.size() / 6);
+  std::fill_n(twice.point_sheet.begin(), points / 2, Index{1});
+  const Mesh mesh = mesh_of(twice);
+  CHECK(mesh.face_count() == twice.indices.size() / 3);
+  CHECK(validate(mesh));
+  CHECK(validate(Connectivity::build(mesh).value()));
+}
+
 TEST_CASE("assemble names the index or length at fault") {
   TriangleSoup soup = two_triangles();
   soup.indices[4] = 6;
@@ -291,6 +304,9 @@ TEST_CASE("assemble names the index or length at fault") {
   soup.indices.pop_back();
   CHECK(assemble(soup).error().message == "index count 5 is not a multiple of 3");
   soup.indices = {0, 1, 2};
+  soup.point_sheet = {0, 1};
+  CHECK(assemble(soup).error().message == "sheet count 2 differs from point count 6");
+  soup.point_sheet.clear();
   soup.attributes.push_back({"NORMAL", ComponentType::Float32, 3, false, {}});
   CHECK(assemble(soup).error().message == "attribute NORMAL has 0 bytes for 6 points of 12");
 }

@@ -4,9 +4,12 @@
 #include <fstream>
 #include <string>
 
+#include <lodestone/core/validate.h>
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
 
 #include "support/data.h"
+#include "support/gltf_shapes.h"
 #include "support/mesh_properties.h"
 
 namespace lodestone::test {
@@ -315,8 +318,158 @@ TEST_CASE("gltf: what the mesh does not hold is noted") {
   REQUIRE(file);
   std::string all;
   for (const std::string& note : file->notes) all += note + '\n';
-  CHECK_THAT(
-      all, contains("9 morph targets") && contains("4 skins") && contains("14 animations") && contains("3 materials"));
+  CHECK_THAT(all, contains("9 morph targets are left out; meshes are as their weights at rest") &&
+                      contains("4 skins") && contains("14 animations") && contains("3 materials"));
+}
+
+namespace {
+
+struct BothReadings {
+  MeshFile joined;
+  Scene scene;
+};
+
+/// Reads a file joined, and as a scene: both have the same faces in the same box.
+BothReadings read_both(GltfMaker& maker) {
+  auto joined = read_mesh_bytes(maker.glb(), "glb");
+  auto scene = Scene::read_bytes(maker.glb(), "glb");
+  REQUIRE(joined);
+  REQUIRE(scene);
+  std::size_t drawn = 0;
+  for (const SceneMesh& mesh : scene->meshes()) drawn += mesh.mesh.face_count() * mesh.instance_count;
+  CHECK(joined->mesh.face_count() == drawn);
+  CHECK(length(bounding_box(joined->mesh).low - scene->box().low) < 1e-5);
+  CHECK(length(bounding_box(joined->mesh).high - scene->box().high) < 1e-5);
+  CHECK(validate(joined->mesh));
+  return {std::move(*joined), std::move(*scene)};
+}
+
+std::vector<float> times(const TriangleSoup& soup, float factor) {
+  std::vector<float> values;
+  for (const Vec3f& p : soup.positions) values.insert(values.end(), {factor * p.x, factor * p.y, factor * p.z});
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("gltf: instances are drawn once for each, mirrored ones, too") {
+  GltfMaker maker;
+  const TriangleSoup ball = icosphere(1, 0, 1);
+  add_node(maker, "many", add_mesh(maker, "ball", ball), {{"translation", {0, 0, 3}}});
+  GltfJson& attributes = maker.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  attributes["TRANSLATION"] = maker.add_floats({0, 0, 0, 5, 0, 0, 0, 9, 0}, "VEC3", 3);
+  attributes["SCALE"] = maker.add_floats({1, 1, 1, -1, 1, 1, 2, 2, 2}, "VEC3", 3);
+  maker.json["extensionsUsed"] = maker.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  const Mesh mesh = read_both(maker).joined.mesh;
+  CHECK(mesh.face_count() == 3 * ball.indices.size() / 3);
+  // Outward faces enclose a positive volume.
+  double volume = 0;
+  for (std::size_t i = 0; i < mesh.corner_wedge.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return Vec3(mesh.positions[mesh.wedge_vertex[mesh.corner_wedge[i + k]]]); };
+    volume += dot(at(0), cross(at(1), at(2))) / 6;
+  }
+  CHECK(volume > 10 * 3.5);
+}
+
+TEST_CASE("gltf: meshes are as the weights of their morph targets at rest have them, a node's own before its mesh's") {
+  GltfMaker maker;
+  const TriangleSoup ball = icosphere(1, 0, 1);
+  const std::size_t mesh = add_mesh(maker, "ball", ball);
+  GltfJson& primitive = maker.json["meshes"][mesh]["primitives"][0];
+  primitive["attributes"]["NORMAL"] = maker.add_floats(times(ball, 1), "VEC3", 3);
+  primitive["targets"] = {{{"POSITION", maker.add_floats(times(ball, 1), "VEC3", 3)}},
+                          {{"POSITION", maker.add_floats(times(ball, -2), "VEC3", 3)},
+                           {"NORMAL", maker.add_floats(times(ball, -2), "VEC3", 3)}}};
+  add_node(maker, "plain", mesh);
+  CHECK(bounding_box(read_both(maker).joined.mesh).diagonal() == Approx(2 * std::sqrt(3)).epsilon(0.1));
+  const double diagonal = bounding_box(read_both(maker).joined.mesh).diagonal();
+  const auto check_size = [&](double factor, float normal) {
+    const Mesh shown = read_both(maker).joined.mesh;
+    CHECK(bounding_box(shown).diagonal() == Approx(factor * diagonal));
+    REQUIRE(shown.attributes.size() == 1);
+    Vec3f direction;
+    std::memcpy(&direction, shown.attributes[0].data.data(), sizeof direction);
+    CHECK(dot(normalized(Vec3(shown.positions[0])), Vec3(direction)) == Approx(factor > 0 ? normal : -normal));
+  };
+  maker.json["meshes"][mesh]["weights"] = {2, 0};
+  check_size(3, 1);
+  maker.json["meshes"][mesh]["weights"] = {0, 2};
+  check_size(3, 1);  // turned inside out, and its normals with it
+  maker.json["nodes"][0]["weights"] = {0.5, 0};
+  check_size(1.5, 1);
+  maker.json["nodes"][0]["weights"] = {0};
+  check_size(1, 1);
+  add_node(maker, "again", mesh, {{"translation", {40, 0, 0}}, {"weights", {5, 0}}});
+  add_node(maker, "third", mesh, {{"translation", {0, 40, 0}}});
+  CHECK(bounding_box(read_both(maker).joined.mesh).high.x == Approx(46).epsilon(0.01));
+}
+
+TEST_CASE(
+    "gltf: what the same instance draws twice is one face, what nodes, primitives, skins or targets tell apart is "
+    "not") {
+  const TriangleSoup ball = icosphere(1, 0, 1);
+  const std::size_t faces = ball.indices.size() / 3, points = ball.positions.size();
+  TriangleSoup twice = ball;
+  twice.indices.insert(twice.indices.end(), ball.indices.begin(), ball.indices.end());
+  GltfMaker maker;
+  add_node(maker, "twice", add_mesh(maker, "twice", twice));
+  CHECK(read_both(maker).joined.mesh.face_count() == faces);
+  add_node(maker, "again", 0);
+  CHECK(read_both(maker).joined.mesh.face_count() == 2 * faces);
+  GltfJson& primitives = maker.json["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  CHECK(read_both(maker).joined.mesh.face_count() == 4 * faces);
+
+  // The second half of the points has other targets, or other joints.
+  twice = ball;
+  for (const Vec3f& p : ball.positions) twice.positions.push_back(p);
+  for (const Index point : ball.indices) twice.indices.push_back(static_cast<Index>(points + point));
+  for (const bool skinned : {false, true}) {
+    GltfMaker other;
+    add_node(other, "twice", add_mesh(other, "twice", twice));
+    CHECK(read_both(other).joined.mesh.face_count() == faces);
+    GltfJson& primitive = other.json["meshes"][0]["primitives"][0];
+    if (skinned) {
+      std::vector<std::uint8_t> joints(4 * 2 * points);
+      std::vector<float> weights(4 * 2 * points);
+      for (std::size_t i = 0; i < 2 * points; ++i) joints[4 * i] = i >= points, weights[4 * i] = 1;
+      primitive["attributes"]["JOINTS_0"] = other.add_accessor(joints, 5121, "VEC4", 4);
+      primitive["attributes"]["WEIGHTS_0"] = other.add_floats(weights, "VEC4", 4);
+      for (const char* name : {"a", "b"})
+        other.json["scenes"][0]["nodes"].push_back(other.add("nodes", {{"name", name}}));
+      other.add("skins", {{"joints", {1, 2}}});
+      other.json["nodes"][0]["skin"] = 0;
+    } else {
+      std::vector<float> moves(3 * points), up(3 * points, 1.0F);
+      moves.insert(moves.end(), up.begin(), up.end());
+      primitive["targets"] = {{{"POSITION", other.add_floats(moves, "VEC3", 3)}}};
+    }
+    CHECK(read_both(other).joined.mesh.face_count() == 2 * faces);
+  }
+}
+
+TEST_CASE("gltf: a file that names one accessor again and again is refused before memory ends") {
+  GltfMaker maker;
+  add_node(maker, "ball", add_mesh(maker, "ball", icosphere(4, 0, 1)));
+  GltfJson& primitive = maker.json["meshes"][0]["primitives"][0];
+  const GltfJson target = {{"POSITION", primitive["attributes"]["POSITION"]}};
+  primitive["targets"] = GltfJson(100'000, target);
+  for (const auto& code :
+       {read_mesh_bytes(maker.glb(), "glb").error().code, Scene::read_bytes(maker.glb(), "glb").error().code})
+    CHECK(code == ErrorCode::LimitExceeded);
+}
+
+TEST_CASE("gltf: files from the field have as many faces joined as their scenes draw") {
+  LODESTONE_SKIP_WITHOUT_MODELS();
+  for (const char* name : {"skin-morph/Knight.glb", "skin-morph/RobotExpressive.glb", "skin-morph/MorphStressTest.gltf",
+                           "field/coincident-morphed.glb", "field/coincident-skinned.glb", "field/doubled-faces.glb",
+                           "field/overlay-materials.glb", "field/grows-by-animation.glb"}) {
+    INFO(name);
+    std::size_t drawn = 0;
+    const Scene scene = Scene::read(*model(name)).value();
+    for (const SceneMesh& mesh : scene.meshes()) drawn += mesh.mesh.face_count() * mesh.instance_count;
+    CHECK(read_mesh(*model(name)).value().mesh.face_count() == drawn);
+  }
 }
 
 }  // namespace lodestone::test

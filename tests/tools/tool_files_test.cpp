@@ -92,7 +92,7 @@ void write_textured(const fs::path& folder) {
   document["images"] = {{{"uri", "wood%20grain.png"}},
                         {{"uri", "maps/bark.png"}},
                         {{"uri", std::string("data:image/png;base64,") + kPng}},
-                        {{"bufferView", 2}, {"mimeType", "image/png"}, {"name", "leaf"}}};
+                        {{"bufferView", 2}, {"mimeType", "image/png"}, {"name", "leaf.png"}}};
   document["accessors"] = {{{"bufferView", 0},
                             {"componentType", 5126},
                             {"count", 4},

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/cad_shapes.h"
 #include "support/catch.h"
 #include "support/data.h"
 #include "support/gltf_shapes.h"
@@ -147,6 +148,45 @@ TEST_CASE("a box of many squares is emptied, and then left alone, but for who as
   const Json fewest = shop.build({"--faces", "1"}).report;
   CHECK(faces_of(fewest).back() == 12);
   CHECK(fewest["levels"].back()["stopped_by"] == "error");
+}
+
+TEST_CASE("small shapes go on as long as what is measured of them does not leap, whatever their bounds say") {
+  std::vector<TriangleSoup> shapes = {cylinder(8, 2), cut_box(45), rod(10)};
+  for (const int subdivisions : {0, 1})
+    for (const double noise : {0.0, 0.04}) shapes.push_back(icosphere(subdivisions, noise, 1));
+  for (const TriangleSoup& soup : shapes) {
+    Shop shop;
+    shop.add("shape", soup);
+    const Json series = shop.build().report;
+    check_falling(series, 5);
+    const double diagonal = series["input"]["bounding_box"]["diagonal"];
+    const auto ended = [](const Json& level) { return level["stopped_by"] == "error"; };
+    for (const Json& left_out : series["left_out"]) {
+      if (!ended(left_out)) continue;
+      const std::size_t faces = left_out["target"]["faces"];
+      INFO(series["levels"][0]["faces"] << " faces, stopped before " << faces);
+      const Json asked = shop.build({"--faces", std::to_string(faces)}).report;
+      CHECK(largest(asked["levels"].back()) > 0.16 * diagonal);
+      break;
+    }
+  }
+}
+
+TEST_CASE("of very few faces nobody asks for none of them") {
+  for (const int faces : {1, 2, 3, 5}) {
+    Shop shop;
+    shop.add("few", fan(faces + 2, 0.5));
+    shop.maker.json["accessors"][1]["count"] = 3 * faces;
+    for (const Options& scope : {Options{}, Options{"--per-mesh"}}) {
+      INFO(faces << " faces");
+      const Build made = shop.build(scope);
+      check_falling(made.report, 5);
+      CHECK(faces_of(made.report).front() == faces);
+      CHECK(faces_of(made.report).back() >= 1);
+      CHECK_THAT(made.run.err, !contains("0 faces were asked for") && !contains("1, 1"));
+      if (faces == 1) CHECK(made.run.err.empty());
+    }
+  }
 }
 
 TEST_CASE("the field's palm keeps its water, and its levels their shape") {

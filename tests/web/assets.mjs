@@ -8,12 +8,14 @@ import { availableParallelism } from 'node:os';
 import { basename, dirname, extname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { promisify } from 'node:util';
-import { makeTube } from './made.mjs';
+import { makeFlawedTube, makeTube } from './made.mjs';
 import { Log, readOptions, repository, skip } from './suite.mjs';
 
 const demoModel = join(repository, 'demo', 'suzi.glb');
 const large = ['paper/stanford-bunny.obj', 'paper/fandisk.obj'];
 const textured = 'mesh/spot/spot_triangulated.obj';
+const inSeveralFiles = ['gltf/Lantern/Lantern_nobasecolor.gltf', 'skin-morph/Knight.glb'];
+const withMaterial = 'field/cube with material.obj';
 const noDraco = '--no-draco';
 
 function variants(input, kind, output, flagSets) {
@@ -24,21 +26,33 @@ function variants(input, kind, output, flagSets) {
   });
 }
 
+/** The same as several files, in a folder of its own: images keep the names that they had. */
+function asSeveralFiles(asset) {
+  const name = `${asset.name}.gltf`;
+  return { ...asset, name, path: join(dirname(asset.path), 'gltf', asset.name, name) };
+}
+
 function sceneModels(models) {
   return ['gltf', 'skin-morph'].map((name) => join(models, name)).filter(existsSync).flatMap((folder) =>
     readdirSync(folder, { recursive: true }).filter((name) => ['.gltf', '.glb'].includes(extname(name))).sort()
       .map((name) => join(folder, name)));
 }
 
-const madeModel = (output) => join(output, 'made', 'tube.glb');
+/** The models of our own, by file. */
+const madeModels = (output) =>
+  ({ [join(output, 'made', 'tube.glb')]: makeTube, [join(output, 'made', 'flawed.glb')]: makeFlawedTube });
 
 /** Returns all assets: what goes in, what comes out, how; `kind` is `mesh` for one bare mesh, else `scene`. */
 export function planAssets({ models, output }) {
   const found = (names) => names.map((name) => join(models, name)).filter(existsSync);
+  const made = Object.keys(madeModels(output));
+  const scenes = [...made, ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], [noDraco]]));
   return [
     ...[demoModel, ...found([textured])].flatMap((input) => variants(input, 'mesh', output, [[], [noDraco]])),
     ...found(large).flatMap((input) => variants(input, 'mesh', output, [[]])),
-    ...[madeModel(output), ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], [noDraco]])),
+    ...scenes,
+    ...scenes.filter(({ input }) => [made[0], ...found(inSeveralFiles)].includes(input)).map(asSeveralFiles),
+    ...found([withMaterial]).flatMap((input) => variants(input, 'scene', output, [[noDraco]])).map(asSeveralFiles),
   ];
 }
 
@@ -53,6 +67,7 @@ export function* chosenAssets(options, subjects) {
 }
 
 async function build(program, { input, path, flags }) {
+  await mkdir(dirname(path), { recursive: true });
   const { stderr } = await promisify(execFile)(program,
     ['build', input, '-o', path, '--quiet', '--levels', '5', '--ratio', '0.5', ...flags]);
   return stderr.includes('warning') ? 'with warnings' : 'done';
@@ -60,8 +75,10 @@ async function build(program, { input, path, flags }) {
 
 async function main() {
   const options = readOptions();
-  await mkdir(dirname(madeModel(options.output)), { recursive: true });
-  await writeFile(madeModel(options.output), makeTube());
+  for (const [path, make] of Object.entries(madeModels(options.output))) {
+    await mkdir(dirname(path), { recursive: true });
+    await writeFile(path, make());
+  }
   const waiting = planAssets(options);
   const log = new Log();
   const work = async () => {

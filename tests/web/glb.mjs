@@ -1,4 +1,4 @@
-// What a multi-LOD .glb says about itself, read without any of the clients.
+// What a multi-LOD file says about itself, read without any of the clients.
 import { readFile } from 'node:fs/promises';
 
 const JSON_CHUNK = 0x4e4f534a;
@@ -9,6 +9,12 @@ export function parseGlb(bytes) {
   if (bytes.toString('latin1', 0, 4) !== 'glTF') throw new Error('not a .glb');
   if (bytes.readUInt32LE(16) !== JSON_CHUNK) throw new Error('the first chunk is not JSON');
   return JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12)));
+}
+
+/** Returns the JSON of a .glb or .gltf. */
+export async function readDocument(path) {
+  const bytes = await readFile(path);
+  return path.endsWith('.gltf') ? JSON.parse(bytes.toString('utf8')) : parseGlb(bytes);
 }
 
 /** Returns the JSON of a .glb and a copy of its binary chunk. */
@@ -70,7 +76,7 @@ export function trianglesOfScene(gltf) {
 
 /** Returns what the file says of its levels, finest first: node, triangles by its accessors, extras; and if it uses Draco. */
 export async function readLevels(path) {
-  const gltf = parseGlb(await readFile(path));
+  const gltf = await readDocument(path);
   const levels = levelNodes(gltf).map((node) => ({
     node,
     triangles: trianglesOfAccessors(gltf, node),

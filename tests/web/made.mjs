@@ -93,7 +93,12 @@ function makeIndices() {
   return Uint16Array.from(indices);
 }
 
-function makePrimitive(store) {
+/** Makes every third row too short and every seventh nothing. */
+function flawed(rows) {
+  return rows.map((row, i) => row.map((value) => value * (i % 7 === 0 ? 0 : i % 3 === 0 ? 0.7 : 1)));
+}
+
+function makePrimitive(store, spoil) {
   const normal = (turn) => [Math.cos(angle(turn)), 0, Math.sin(angle(turn))];
   const place = (turn, share) => [radius(share) * normal(turn)[0], length * share, radius(share) * normal(turn)[2]];
   const upper = (share) => Math.min(1, Math.max(0, 0.5 + 3 * (share - 0.5)));
@@ -103,10 +108,10 @@ function makePrimitive(store) {
   return {
     attributes: {
       POSITION: store.floats(overVertices(place), 'VEC3', true),
-      NORMAL: store.floats(overVertices(normal), 'VEC3'),
+      NORMAL: store.floats(spoil(overVertices(normal)), 'VEC3'),
       TEXCOORD_0: store.floats(overVertices((turn, share) => [turn, share]), 'VEC2'),
       JOINTS_0: store.accessor(Uint8Array.from(overVertices(joints).flat()), 'VEC4'),
-      WEIGHTS_0: store.floats(overVertices(weights), 'VEC4'),
+      WEIGHTS_0: store.floats(spoil(overVertices(weights)), 'VEC4'),
     },
     targets: [{ POSITION: store.floats(overVertices(swell), 'VEC3', true) }],
     indices: store.accessor(makeIndices(), 'SCALAR'),
@@ -120,10 +125,10 @@ function makeAnimation(store, name, node, path, times, values, type) {
   return { name, channels: [{ sampler: 0, target: { node, path } }], samplers: [{ input, output }] };
 }
 
-/** Returns the tube as a .glb. */
-export function makeTube() {
+/** Returns the tube as a .glb; `spoil` makes rows of normals and weights of what they ought to be. */
+export function makeTube(spoil = (rows) => rows, material = {}) {
   const store = new Store();
-  const primitive = makePrimitive(store);
+  const primitive = makePrimitive(store, spoil);
   const moved = (y) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -y, 0, 1];
   const gltf = {
     asset: { version: '2.0' },
@@ -140,7 +145,7 @@ export function makeTube() {
       makeAnimation(store, 'Bend', 2, 'rotation', [0, 1], [[0, 0, 0, 1], [0, 0, Math.sin(0.5), Math.cos(0.5)]], 'VEC4'),
       makeAnimation(store, 'Swell', 0, 'weights', [0, 1], [0, 1], 'SCALAR'),
     ],
-    materials: [{ doubleSided: true, pbrMetallicRoughness: { baseColorTexture: { index: 0 }, metallicFactor: 0 } }],
+    materials: [{ ...material, doubleSided: true, pbrMetallicRoughness: { baseColorTexture: { index: 0 }, metallicFactor: 0 } }],
     textures: [{ source: 0 }],
     images: [{ mimeType: 'image/png', bufferView: store.view(makeTexture(256)) }],
     bufferViews: store.bufferViews,
@@ -148,4 +153,9 @@ export function makeTube() {
     buffers: [{ byteLength: store.size }],
   };
   return joinGlb(gltf, Buffer.concat(store.parts));
+}
+
+/** Returns the tube with normals and weights that are off, and a normal map without tangents. */
+export function makeFlawedTube() {
+  return makeTube(flawed, { normalTexture: { index: 0 } });
 }

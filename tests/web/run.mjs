@@ -28,7 +28,7 @@ function checksOfMesh(checks, site, asset) {
 /** Returns the checks of a scene, by name. */
 function checksOfScene(checks, viewers, pages, asset) {
   return {
-    'gltf-validator': () => checks.addsNoErrors(asset.input, asset.path),
+    'gltf-validator': () => checks.multipliesNoComplaints(asset.input, asset.path),
     'extras': () => checks.chainsAgree(asset.path),
     'three.js': () => viewers.drawsInThree(pages, asset),
     'Babylon.js': () => viewers.loadsInBabylon(pages, asset),

@@ -19,6 +19,10 @@ struct LeapScale {
 Index position_before_leap(const ProgressiveMesh& mesh, std::span<const Index> face_counts,
                            std::span<const double> errors, const LeapScale& scale);
 
+/// Whether an error at a position leaps, as above. Pre: 0 ≤ position < errors.size() − 1.
+bool is_leap(double error, Index position, std::span<const Index> face_counts, std::span<const double> errors,
+             const LeapScale& scale);
+
 /// Whether an error is so many times what a part would have by itself that it must come from the burden of others.
 bool is_burdened(double error, double error_alone, const LeapScale& scale);
 

@@ -58,6 +58,10 @@ bool lies_within(const Mesh& a, const Mesh& b, double limit) {
   return measure_maximum(a, SurfaceIndex(a), b, level_measure(), limit).maximum_bound() <= limit;
 }
 
+double measured_maximum(const Mesh& a, const Mesh& b) {
+  return measure_maximum(a, SurfaceIndex(a), b, level_measure()).maximum_bound();
+}
+
 Result<void> measure_levels(const Scene& scene, const LevelPlan& plan, const BuildOptions& options,
                             const FileLevels& file, std::vector<std::vector<AssetLevel>>& meshes, BuildResult& result,
                             BuildObserver& observer) {

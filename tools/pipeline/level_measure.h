@@ -10,6 +10,9 @@ namespace lodestone::detail {
 /// Whether the two surfaces are nowhere farther from each other than `limit`, in mesh units.
 bool lies_within(const Mesh& a, const Mesh& b, double limit);
 
+/// Returns a bound on how far the two surfaces are from each other anywhere, in mesh units.
+double measured_maximum(const Mesh& a, const Mesh& b);
+
 /// Which of a plan's levels one of its files holds.
 struct FileLevels {
   std::size_t file = 0, file_count = 1;

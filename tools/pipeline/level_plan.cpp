@@ -4,6 +4,9 @@
 #include <limits>
 #include <utility>
 
+#include "pipeline/level_measure.h"
+#include "pipeline/level_mesh.h"
+
 namespace lodestone::detail {
 namespace {
 
@@ -32,6 +35,15 @@ std::vector<double> world_charges(const SimplifyResult& result, Metric metric, d
   return charges;
 }
 
+/// What a level at a position really deviates by, in mesh units, but for quantisation.
+double measured_error(const SceneMesh& mesh, const SimplifyResult& simplified, Index position,
+                      const BuildOptions& options) {
+  Mesh level = extract_level_at(simplified.mesh, position);
+  if (fits_levels(mesh, options)) level = fitted_level(mesh, simplified, level);
+  return measured_maximum(mesh.mesh, level);
+}
+
+/// What they return looks at the scene, the streams and the options.
 std::vector<ScenePart> parts_of(const Scene& scene, const std::vector<SimplifyResult>& simplified,
                                 const BuildOptions& options) {
   const std::vector<double> displacements = quantisation_errors(scene, storage_of(scene, options));
@@ -41,6 +53,7 @@ std::vector<ScenePart> parts_of(const Scene& scene, const std::vector<SimplifyRe
     parts.push_back({&simplified[i].mesh, mesh.scale, mesh.instance_count, simplified[i].stop_reason,
                      importance_of(mesh, options.importance),
                      world_charges(simplified[i], options.simplify.metric, mesh.scale),
+                     [&, i](Index position) { return measured_error(scene.meshes()[i], simplified[i], position, options); },
                      kBoxGrowth * displacements[i]});
   }
   return parts;

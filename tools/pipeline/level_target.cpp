@@ -31,9 +31,9 @@ std::vector<LevelTarget> ratio_targets(double ratio, int count) {
 LevelTarget resolve(const LevelTarget& target, const FullSize& full) {
   if (!target.relative) return target;
   if (target.kind == TargetKind::Error) return {target.kind, target.value * full.diagonal, false, target.is_wish};
-  // 0.29 of 100 is 29, though the product of the doubles falls just short of it.
-  const double faces = target.value * static_cast<double>(full.face_count);
-  return {target.kind, std::floor(faces * (1 + 1e-12)), false, target.is_wish};
+  // 0.29 of 100 is 29, though the product of the doubles falls just short of it. Of few faces a share is one at least.
+  const double faces = std::floor(target.value * static_cast<double>(full.face_count) * (1 + 1e-12));
+  return {target.kind, target.value > 0 ? std::max(faces, 1.0) : faces, false, target.is_wish};
 }
 
 LevelChoice choose_level(const ProgressiveMesh& mesh, const LevelTarget& target, StopReason end) {

@@ -3,11 +3,10 @@
 #include <utility>
 
 #include <lodestone/core/parallel.h>
-#include <lodestone/lod/cursor.h>
-#include <lodestone/lod/placement.h>
 
 #include "pipeline/build_progress.h"
 #include "pipeline/level_measure.h"
+#include "pipeline/level_mesh.h"
 
 namespace lodestone::detail {
 namespace {
@@ -32,15 +31,9 @@ AssetLevel make_level(const LevelSource& source, const BuildOptions& options) {
   AssetLevel level;
   level.curvature_error = progressive.curvature_error[position];
   state_why(source.choice, source.mesh, level);
-  Cursor cursor(progressive);
-  cursor.seek(position);
-  level.mesh = extract_level(progressive, cursor);
-  // Vertices of skinned and morphed meshes take their weights and targets with them, so those stay where they are.
-  const bool fits = options.placement == Placement::Optimised && !source.whole.skinned && !source.whole.has_targets;
-  if (!fits || position == progressive.record_count()) return level;
-  PlacementOptions placement;
-  placement.fixed = source.simplified.locked;
-  Mesh fitted = optimise_placement(source.whole.mesh, level.mesh, placement);
+  level.mesh = extract_level_at(progressive, position);
+  if (!fits_levels(source.whole, options) || position == progressive.record_count()) return level;
+  Mesh fitted = fitted_level(source.whole, source.simplified, level.mesh);
   const double bound = static_cast<double>(progressive.deviation[position]);
   const bool is_limited = source.choice.target.kind == TargetKind::Error;
   if (!is_limited || lies_within(source.whole.mesh, fitted, bound)) level.mesh = std::move(fitted);

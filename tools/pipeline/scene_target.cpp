@@ -53,6 +53,21 @@ struct PartCurve {
     if (faces.front() > 0) before_leap = position_before_leap(*part.mesh, faces, errors, size);
   }
 
+  /// Goes on towards a position beyond the leap, half of the faces at a time, where bounds are only loose.
+  void look_closer(const ScenePart& part, Index position) {
+    while (position < before_leap && part.measure) {
+      const Index half = (faces[before_leap] + 1) / 2;
+      const auto first = std::lower_bound(faces.begin(), faces.end(), half);
+      Index next = std::max(position, static_cast<Index>(first - faces.begin()));
+      while (!is_whole(*part.mesh, next)) ++next;
+      if (next >= before_leap) return;
+      const double measured = part.measure(next);
+      if (is_leap(measured, next, faces, errors, size)) return;
+      for (Index p = next; p < before_leap; ++p) errors[p] = std::min(errors[p], measured);
+      before_leap = next;
+    }
+  }
+
   std::vector<Index> faces;
   std::vector<double> errors;  // mesh units
   LeapScale size;
@@ -112,7 +127,8 @@ class FaceBudget {
   std::vector<Index> within(double threshold) const {
     std::vector<Index> positions;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const auto first = std::partition_point(losses_[i].begin(), losses_[i].end(), [&](double e) { return e > threshold; });
+      const auto first =
+          std::partition_point(losses_[i].begin(), losses_[i].end(), [&](double e) { return e > threshold; });
       positions.push_back(std::max(floors_[i], static_cast<Index>(first - losses_[i].begin())));
     }
     return positions;
@@ -168,12 +184,9 @@ bool is_burdened(std::span<const PartCurve> curves, std::span<const Index> posit
 }
 
 SceneChoice share_faces(std::span<const ScenePart> parts, const LevelTarget& target, double diagonal) {
-  const std::vector<PartCurve> curves = curves_of(parts, TargetScope::Scene, diagonal);
+  std::vector<PartCurve> curves = curves_of(parts, TargetScope::Scene, diagonal);
   std::vector<Index> whole, before_leap;
-  for (const PartCurve& curve : curves) {
-    whole.push_back(static_cast<Index>(curve.faces.size() - 1));
-    before_leap.push_back(curve.before_leap);
-  }
+  for (const PartCurve& curve : curves) whole.push_back(static_cast<Index>(curve.faces.size() - 1));
   const FaceBudget free(parts, curves, std::vector<Index>(parts.size(), 0));
   const std::size_t full = free.drawn(whole);
   SceneChoice choice{resolve(target, {full, diagonal}), {}, true, std::string(name_of(target.kind)), {}};
@@ -182,6 +195,10 @@ SceneChoice share_faces(std::span<const ScenePart> parts, const LevelTarget& tar
   choice.positions = nearest;
   if (!target.is_wish && free.can_meet(budget)) return choice;
 
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    curves[i].look_closer(parts[i], nearest[i]);
+    before_leap.push_back(curves[i].before_leap);
+  }
   const FaceBudget guarded(parts, curves, before_leap);
   const std::vector<Index> fair = guarded.share(std::max(budget, guarded.fair(budget / static_cast<double>(full))));
   choice.positions = guarded.share(budget);
@@ -222,11 +239,13 @@ SceneChoice choose_each(std::span<const ScenePart> parts, const LevelTarget& tar
 SceneChoice choose_faces_of_each(std::span<const ScenePart> parts, const LevelTarget& target) {
   SceneChoice choice = choose_each(parts, target);
   if (choice.met && !target.is_wish) return choice;
-  const std::vector<PartCurve> curves = curves_of(parts, TargetScope::Mesh, 0);
+  std::vector<PartCurve> curves = curves_of(parts, TargetScope::Mesh, 0);
   const std::vector<Index> nearest = choice.positions;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (target.is_wish || !choose_for_part(parts[i], target).met)
-      choice.positions[i] = std::max(choice.positions[i], curves[i].before_leap);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!target.is_wish && choose_for_part(parts[i], target).met) continue;
+    curves[i].look_closer(parts[i], nearest[i]);
+    choice.positions[i] = std::max(choice.positions[i], curves[i].before_leap);
+  }
   if (choice.positions != nearest) note_stop(parts, curves, nearest, choice);
   return choice;
 }

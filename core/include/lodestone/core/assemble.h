@@ -14,6 +14,8 @@ struct TriangleSoup {
   std::vector<Attribute> attributes;  ///< each with one element per point
   std::vector<Index> indices;         ///< three per triangle: points, < positions.size()
   std::vector<Index> face_material;   ///< one per triangle, or empty
+  /// One per point, or empty: faces of points that differ in it are no duplicates, though all else agrees.
+  std::vector<Index> point_sheet;
 };
 
 /// At an edge of more faces than these nobody drew sheets: all are cut apart.
@@ -49,8 +51,8 @@ struct AssembledMesh {
 /// Points with equal coordinates become one vertex; points that also agree in every attribute byte become one wedge.
 /// Edges of more than two triangles and bow-tie vertices are cut: each sheet gets a vertex of its own, at the same
 /// position. Sheets that lie on one another stay whole: at their edges triangles are neighbours as material, attributes
-/// and angles say. `Connectivity` recognises the copies of a vertex by their equal positions; they are removed together,
-/// so no crack opens.
+/// and angles say. `Connectivity` recognises the copies of a vertex by their equal positions; they are removed
+/// together, so no crack opens.
 ///
 /// Where faces may be turned, all that two-face edges join winds alike afterwards, as far as a surface has two sides.
 /// Nothing is turned that winds alike already, nor against normals. Which side is the front normals say, where there are

@@ -21,15 +21,15 @@ namespace lodestone {
 /// The attributes are those of all primitives, zero where a primitive lacks one; an attribute that primitives have in
 /// different types stands there once for each type. Morph targets travel as attributes "TARGET_<i>:<SEMANTIC>", floats.
 struct SceneMesh {
-  std::string name;                    ///< may be empty
-  Mesh mesh;                           ///< face_material: the number of the primitive in the document's mesh
-  AssemblyReport assembly;             ///< what became of the triangles in the file
-  double scale = 1;                    ///< the largest stretch of any instance, ever, also by morph targets: world
-                                       ///< units per mesh unit
-  double area = 0;                     ///< of all its instances together when largest, squared world units
-  std::size_t instance_count = 0;      ///< how often the scene shows it
-  bool skinned = false;                ///< by any of its nodes
-  bool has_targets = false;            ///< morph targets
+  std::string name;                ///< may be empty
+  Mesh mesh;                       ///< face_material: the number of the primitive in the document's mesh
+  AssemblyReport assembly;         ///< what became of the triangles in the file
+  double scale = 1;                ///< the largest stretch of any instance, ever, also by morph targets: world
+                                   ///< units per mesh unit
+  double area = 0;                 ///< of all its instances together when largest, squared world units
+  std::size_t instance_count = 0;  ///< how often the scene shows it
+  bool skinned = false;            ///< by any of its nodes
+  bool has_targets = false;        ///< morph targets
   /// By morph target: the most that a displacement of length 1 is in the world beside a length 1 of the mesh. Targets
   /// count at the largest weight that they have at rest or that animations give them, and at 1 at least.
   std::vector<double> target_reach;

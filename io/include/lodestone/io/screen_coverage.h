@@ -5,6 +5,9 @@
 
 namespace lodestone {
 
+/// Pixels of the height of a screen, where nobody says how large it is.
+inline constexpr double kScreenHeight = 1080;
+
 /// How a level of an object differs from the object, all its parts together.
 struct LevelLook {
   double rms_deviation = 0;  ///< world units
@@ -19,7 +22,7 @@ struct LevelLook {
 double visible_error(const LevelLook& level);
 
 /// Returns for each level, finest first, the share of the screen's height that an object spans where the next level
-/// takes over: where that one's visible error is one pixel of 1080. Values are below 1 and fall strictly; the last is
+/// takes over: where that one's visible error is one pixel of `kScreenHeight`. Values are below 1 and fall strictly; the last is
 /// 0, so that nothing ever vanishes. A level that looks no worse than the one before takes over at once.
 /// Pre: `size` is the object's longest side, `visible_errors` has one value for each level.
 std::vector<double> screen_coverages(double size, std::span<const double> visible_errors);

@@ -41,7 +41,7 @@ struct LevelChoice {
   std::string stopped_by;  ///< why the level is no coarser: faces, error, epsilon; or stuck
 };
 
-/// Returns the target in absolute numbers; a share of the faces is rounded down.
+/// Returns the target in absolute numbers; a share of the faces is rounded down, but to one face, unless it is 0.
 LevelTarget resolve(const LevelTarget& target, const FullSize& full);
 
 /// Finds the level that answers an absolute target; an error of 0 is the whole mesh.

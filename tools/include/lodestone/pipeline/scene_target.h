@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct ScenePart {
   /// By position, falling from coarse to fine: what is lost there, in a unit that all parts share. Empty: the
   /// deviation.
   std::vector<double> loss;
+  /// Returns what a level at a position really deviates by, in mesh units, where bounds say that it is too much; empty:
+  /// bounds are believed.
+  std::function<double(Index)> measure;
   double displacement = 0;  ///< how far a file moves its vertices beyond the stream's deviations, mesh units
 };
 
@@ -45,7 +49,7 @@ struct SceneChoice {
 /// Finds the positions that answer a target. Faces go where they are worth most: all parts get the coarsest level
 /// within one loss, the smallest for which the faces suffice, and what is left goes to whichever part has lost most.
 /// Where the faces do not suffice, as some parts cannot have so few, the others get their share of what those would have
-/// got, and no part goes on where its error leaps (see `position_before_leap`). A target that is a wish gives way, too,
+/// got, and no part goes on where its error leaps (see `position_before_leap`), by its bound and as it is measured. A target that is a wish gives way, too,
 /// where meeting it makes a part's error leap. `diagonal` is the scene's.
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal);
