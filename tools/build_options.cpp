@@ -1,4 +1,4 @@
-#include <lodestone/pipeline/build_options.h>
+#include "build_options.h"
 
 #include <map>
 #include <numbers>

@@ -7,9 +7,9 @@
 #include <system_error>
 
 #include <lodestone/io/screen_coverage.h>
-#include <lodestone/pipeline/build_options.h>
 
 #include "asset_files.h"
+#include "build_options.h"
 #include "messages.h"
 #include "staged_file.h"
 #include "standard_streams.h"
