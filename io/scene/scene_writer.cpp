@@ -164,7 +164,7 @@ class SceneWriter {
       geometry_.emplace_back();
       for (std::size_t level = 0; level < range_.count; ++level) {
         LODESTONE_TRY(LevelGeometry matched, match_level(level_of(mesh, level).mesh, impl_.sources[mesh]));
-        if (!repeats_original(mesh, level)) mend_attributes(impl_.sources[mesh], matched);
+        if (range_.first + level > 0) mend_attributes(impl_.sources[mesh], matched);
         geometry_.back().push_back(std::move(matched));
       }
     }
@@ -178,13 +178,10 @@ class SceneWriter {
     return {};
   }
 
-  /// The finest level keeps what it has, and those that share its data.
-  bool repeats_original(std::size_t mesh, std::size_t level) const {
-    return range_.first + level == 0 || same_mesh(level_of(mesh, level).mesh, meshes_[mesh].levels[0].mesh);
-  }
-
+  /// The finest level keeps what it has: it shares no data that are mended.
   bool repeats_coarser(std::size_t mesh, std::size_t level) const {
-    return level + 1 < range_.count && same_mesh(level_of(mesh, level).mesh, level_of(mesh, level + 1).mesh);
+    if (level + 1 == range_.count || (level == 0 && !geometry_[mesh][1].mended.empty())) return false;
+    return same_mesh(level_of(mesh, level).mesh, level_of(mesh, level + 1).mesh);
   }
 
   Result<void> add_level(std::size_t level) {
@@ -416,7 +413,7 @@ class SceneWriter {
   std::vector<std::vector<AssetLevel>> levels_;           // with the numbers that the file states
   std::vector<Json> originals_;                           // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
-  std::vector<AssetFile> beside_;                  // images
+  std::vector<AssetFile> beside_;  // images
   AssetLayout layout_;
   std::vector<std::uint64_t> collapsed_;  // faces of each level, all instances counted
 };

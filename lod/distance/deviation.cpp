@@ -4,6 +4,10 @@
 // many as Metro's. They are always the same: at equal steps of length and area, and within the faces by M. Roberts'
 // quasirandom sequence R2 ("The unreasonable effectiveness of quasirandom sequences", 2018). The maximum is not left to
 // the samples, see supremum.cpp.
+//
+// Departure: where faces are thinner than the step of Metro's samples, edges lie so close that they would take all of
+// them; none would lie between, and a surface that keeps the edges would seem to have no error. There an edge gets the
+// fewer the closer its neighbours lie, and the faces get the rest.
 
 #include <lodestone/lod/deviation.h>
 
@@ -32,6 +36,7 @@ using detail::SurfaceBounds;
 constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's default.
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
 constexpr double kLeastFaceShare = 0.125;
+constexpr double kLeastWidth = 1.2;  // Of an edge's faces, in steps; an edge of narrower ones gets fewer samples.
 
 /// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be
 /// 0.
@@ -60,27 +65,25 @@ void step_through(const std::vector<double>& until, std::size_t count, const Vis
 /// The vertices that faces use, the edges and the faces of a mesh, with points on each.
 class Samples {
  public:
-  explicit Samples(const Mesh& mesh) : mesh_(mesh) {
-    find_vertices();
-    find_edges();
+  /// `metros_count`: how many samples Metro is asked for.
+  Samples(const Mesh& mesh, double metros_count) : mesh_(mesh) {
     face_until_.resize(mesh.face_count());
-    for (Index f = 0; f < mesh.face_count(); ++f) face_until_[f] = 0.5 * length(area_vector(mesh, f));
-    area_ = add_up(face_until_);
+    for (Index f = 0; f < mesh.face_count(); ++f) face_until_[f] = area_of(f);
+    const double area = add_up(face_until_);
+    find_vertices();
+    counts_.vertices = static_cast<double>(vertices_.size());
+    const double rest = std::max(metros_count - counts_.vertices, 0.0);
+    const double per_length = area > 0 ? std::sqrt(rest / area) : 0;
+    const double edge_length = find_edges(per_length > 0 ? kLeastWidth / per_length : 0);
+    counts_.edges = area > 0 ? std::min(edge_length * per_length, rest) : rest;
+    counts_.faces = rest - counts_.edges;
   }
 
-  /// How many samples Metro takes of each kind when asked for `count`.
+  /// How many samples Metro takes of each kind.
   struct Counts {
     double vertices = 0, edges = 0, faces = 0;
   };
-  Counts metros_counts(double count) const {
-    Counts result;
-    result.vertices = static_cast<double>(vertices_.size());
-    const double rest = std::max(count - result.vertices, 0.0);
-    const double samples_per_length = std::sqrt(rest / area_);
-    result.edges = area_ > 0 ? std::min(length_ * samples_per_length, rest) : rest;
-    result.faces = rest - result.edges;
-    return result;
-  }
+  const Counts& metros_counts() const { return counts_; }
 
   /// Each calls `visit(point, face)`, with a face that the point is on, for `count` samples spread evenly.
   template <class Visit>
@@ -117,36 +120,52 @@ class Samples {
     }
   }
 
-  /// Each edge once, however many faces it has, in the order of the faces.
-  void find_edges() {
-    struct Edge {
-      Index low, high, corner;
-    };
+  struct Edge {
+    Index low, high, corner;
+    double area;  // Of its faces.
+  };
+
+  /// Returns each edge once, however many faces it has, in the order of the faces.
+  std::vector<Edge> list_edges() const {
     std::vector<Edge> edges(mesh_.corner_wedge.size());
     for (Index corner = 0; corner < edges.size(); ++corner) {
       const auto [low, high] = std::minmax({mesh_.corner_vertex(corner), mesh_.corner_vertex(next_corner(corner))});
-      edges[corner] = {low, high, corner};
+      edges[corner] = {low, high, corner, area_of(face_of_corner(corner))};
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
       return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
     });
-    const auto same = [](const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; };
-    edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
-    for (const Edge& edge : edges) edges_.push_back(edge.corner);
-    std::sort(edges_.begin(), edges_.end());
-    for (const Index corner : edges_) {
-      edge_until_.push_back(length(mesh_.corner_position(next_corner(corner)) - mesh_.corner_position(corner)));
+    std::vector<Edge> distinct;
+    for (const Edge& edge : edges) {
+      if (!distinct.empty() && distinct.back().low == edge.low && distinct.back().high == edge.high)
+        distinct.back().area += edge.area;
+      else
+        distinct.push_back(edge);
     }
-    length_ = add_up(edge_until_);
+    std::sort(distinct.begin(), distinct.end(), [](const Edge& a, const Edge& b) { return a.corner < b.corner; });
+    return distinct;
   }
+
+  /// Returns the length of all edges, in which those whose faces are narrower than `least_width` count less.
+  double find_edges(double least_width) {
+    for (const Edge& edge : list_edges()) {
+      const Vec3 from = mesh_.corner_position(edge.corner);
+      const double size = length(mesh_.corner_position(next_corner(edge.corner)) - from);
+      const double narrow = edge.area < size * least_width ? edge.area / (size * least_width) : 1;
+      edges_.push_back(edge.corner);
+      edge_until_.push_back(size * narrow * narrow);
+    }
+    return add_up(edge_until_);
+  }
+
+  double area_of(Index face) const { return 0.5 * length(area_vector(mesh_, face)); }
 
   const Mesh& mesh_;
   std::vector<Index> vertices_;     // A corner at each.
   std::vector<Index> edges_;        // The first corner on each.
-  std::vector<double> edge_until_;  // Running sums of lengths.
+  std::vector<double> edge_until_;  // Running sums of lengths, less where faces are narrow.
   std::vector<double> face_until_;  // Running sums of areas.
-  double length_ = 0;
-  double area_ = 0;
+  Counts counts_;
 };
 
 /// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
@@ -192,8 +211,8 @@ double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_in
                      OneSidedDeviation& result) {
   const std::size_t face_count = std::max(from.face_count(), to.face_count());
   const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
-  const Samples samples(from);
-  const Samples::Counts weights = samples.metros_counts(metros_count);
+  const Samples samples(from, metros_count);
+  const Samples::Counts& weights = samples.metros_counts();
   const auto taken = [&](double weight) {
     return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
   };

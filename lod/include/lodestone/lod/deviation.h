@@ -44,7 +44,8 @@ Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k);
 /// Rocchini, Scopigno, 1998) takes by default, each counting once. Of n samples, ten for each face of the larger mesh and
 /// at least 100,000, one lies at each vertex; with m the rest and A the area, √(m/A) lie on each unit of length of the
 /// edges, each edge taken once; what is left then is spread evenly over the faces. So finely meshed parts weigh more than
-/// their area. `options.sample_count` changes only how many samples are taken to estimate these, not what they are.
+/// their area. Where faces are thinner than the step between such samples, Metro would take none between their edges:
+/// there edges count the less the thinner the faces are, and the mean nears that of the area. `options.sample_count` changes only how many samples are taken to estimate these, not what they are.
 Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options = {});
 
 /// Measures only the two-sided maximum, narrowed as `options` says; mean and rms stay 0.
