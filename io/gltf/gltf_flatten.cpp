@@ -24,6 +24,7 @@ namespace {
 
 // Nodes may show one mesh any number of times, so that a scene's size is not bounded by its file's.
 constexpr std::size_t kMaxCorners = 300'000'000;
+constexpr std::size_t kTargetCost = 100;  // of a morph target that is looked at, in points that it moves
 
 // Extensions that are decoded, and those that have no say in where triangles are.
 constexpr std::array<std::string_view, 10> kKnownExtensions = {
@@ -127,25 +128,25 @@ void append_attributes(std::vector<Attribute>& attributes, const Primitive& prim
   }
 }
 
-/// Adds a number for each point: points of one are alike in all that is left out, too, and no other primitive or
-/// instance has it.
-void append_sheets(TriangleSoup& soup, const Primitive& primitive, std::size_t first) {
-  const auto is_left_out = [&](const Attribute& a) {
-    return std::none_of(soup.attributes.begin(), soup.attributes.end(),
-                        [&](const auto& b) { return a.name == b.name; });
+/// Numbers the points of a primitive by what they have beside the attributes that are kept.
+std::vector<Index> number_sheets(const Primitive& primitive, const std::vector<Attribute>& kept) {
+  const auto is_kept = [&](const Attribute& a) {
+    return std::any_of(kept.begin(), kept.end(), [&](const Attribute& b) { return a.name == b.name; });
   };
   std::vector<const Attribute*> left_out;
   for (const Attribute& a : primitive.attributes)
-    if (is_left_out(a)) left_out.push_back(&a);
+    if (!is_kept(a)) left_out.push_back(&a);
   for (const Attribute& a : primitive.targets) left_out.push_back(&a);
-  std::unordered_map<std::string, Index> sheets;
+  std::unordered_map<std::string, Index> numbers;
+  std::vector<Index> sheet;
   std::string bytes;
   for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
     bytes.clear();
     for (const Attribute* a : left_out)
       bytes.append(reinterpret_cast<const char*>(a->data.data()) + i * a->element_bytes(), a->element_bytes());
-    soup.point_sheet.push_back(sheets.try_emplace(bytes, static_cast<Index>(first + sheets.size())).first->second);
+    sheet.push_back(numbers.try_emplace(bytes, static_cast<Index>(numbers.size())).first->second);
   }
+  return sheet;
 }
 
 Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, const Placement& placement) {
@@ -155,7 +156,8 @@ Result<void> append_primitive(TriangleSoup& soup, const Primitive& primitive, co
   for (std::size_t i = 0; i < primitive.positions.size(); ++i)
     soup.positions.push_back(placement.at(i).point(primitive.positions[i]));
   append_attributes(soup.attributes, primitive, placement);
-  append_sheets(soup, primitive, first);
+  // No other primitive or instance has these numbers.
+  for (const Index number : primitive.sheet) soup.point_sheet.push_back(static_cast<Index>(first + number));
   const bool mirrored = placement.mirrors();
   for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
     const Index a = primitive.indices[i], b = primitive.indices[i + 1], c = primitive.indices[i + 2];
@@ -183,18 +185,21 @@ void morph_directions(Attribute& attribute, const MorphTargets& targets, std::sp
   }
 }
 
-Primitive morphed(Primitive primitive, const MorphTargets& targets, std::span<const float> weights) {
+/// Returns the primitive without its targets, moved by them.
+Primitive morphed(const Primitive& primitive, const MorphTargets& targets, std::span<const float> weights) {
+  Primitive moved{primitive.positions, primitive.attributes, {}, primitive.indices, primitive.sheet,
+                  primitive.material,  primitive.number};
   std::vector<Vec3> points;
   for (const Vec3f& p : primitive.positions) points.push_back(Vec3(p));
   targets.move(points, weights);
-  for (std::size_t i = 0; i < points.size(); ++i) primitive.positions[i] = to_float(points[i]);
-  for (Attribute& attribute : primitive.attributes)
+  for (std::size_t i = 0; i < points.size(); ++i) moved.positions[i] = to_float(points[i]);
+  for (Attribute& attribute : moved.attributes)
     if (attribute.name == "NORMAL" || attribute.name == "TANGENT")
       morph_directions(attribute, MorphTargets(primitive.targets, attribute.name), weights);
-  return primitive;
+  return moved;
 }
 
-/// Shows meshes at the weights of their morph targets at rest; copies of one node follow on one another.
+/// Shows meshes at the weights of their morph targets at rest, one instance after the other.
 class RestMorph {
  public:
   explicit RestMorph(const GltfDocument& document) : document_(document) {}
@@ -202,33 +207,37 @@ class RestMorph {
   /// The result is valid until the next call.
   Result<std::span<const Primitive>> primitives_of(const MeshInstance& instance,
                                                    std::span<const Primitive> primitives) {
-    if (instance.node == node_ && instance.node != kNoNode) return morphed_.empty() ? primitives : morphed_;
-    node_ = instance.node;
-    morphed_.clear();
-    if (std::all_of(primitives.begin(), primitives.end(), [](const Primitive& p) { return p.targets.empty(); }))
-      return primitives;
-    const auto node = document_.element("nodes", "node", node_);
-    const TargetWeights weights = weights_at_rest(document_, node ? **node : Json(), instance.mesh);
-    const auto is_moved = [&](const Primitive& p) { return MorphTargets(p.targets).count_shown(weights) > 0; };
-    LODESTONE_CHECK(spend(weights.size()));
-    if (std::none_of(primitives.begin(), primitives.end(), is_moved)) return primitives;
-    for (const Primitive& primitive : primitives) {
-      const MorphTargets targets(primitive.targets);
-      LODESTONE_CHECK(spend(primitive.positions.size() * targets.count_shown(weights)));
-      morphed_.push_back(morphed(primitive, targets, weights));
+    const auto has_no_targets = [](const Primitive& p) { return p.targets.empty(); };
+    if (std::all_of(primitives.begin(), primitives.end(), has_no_targets)) return primitives;
+    const auto found = document_.element("nodes", "node", instance.node);
+    const Json* node = found ? *found : nullptr;
+    const std::pair shown{instance.mesh, node != nullptr && node->contains("weights") ? instance.node : kNoNode};
+    if (shown != shown_) {
+      shown_ = shown;
+      LODESTONE_CHECK(morph(primitives, weights_at_rest(document_, node != nullptr ? *node : Json(), instance.mesh)));
     }
-    return morphed_;
+    return morphed_.empty() ? primitives : morphed_;
   }
 
  private:
-  Result<void> spend(std::size_t points) {
-    spent_ += points;
-    if (spent_ <= kMaxCorners) return {};
-    return fail(ErrorCode::LimitExceeded, text("gltf: morph targets move more than ", kMaxCorners, " points"));
+  Result<void> morph(std::span<const Primitive> primitives, const TargetWeights& weights) {
+    morphed_.clear();
+    std::size_t moved = 0;
+    for (const Primitive& primitive : primitives) {
+      const MorphTargets targets(primitive.targets);
+      const std::size_t shown = targets.count_shown(weights);
+      moved += shown;
+      spent_ += kTargetCost * primitive.targets.size() + (1 + shown) * primitive.positions.size();
+      if (spent_ > kMaxCorners)
+        return fail(ErrorCode::LimitExceeded, text("gltf: morph targets move more than ", kMaxCorners, " points"));
+      morphed_.push_back(morphed(primitive, targets, weights));
+    }
+    if (moved == 0) morphed_.clear();
+    return {};
   }
 
   const GltfDocument& document_;
-  std::size_t node_ = kNoNode;
+  std::pair<std::size_t, std::size_t> shown_{kNoNode, kNoNode};  // a mesh, and the node whose own weights it has
   std::vector<Primitive> morphed_;
   std::size_t spent_ = 0;
 };
@@ -289,6 +298,9 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
   }
   LODESTONE_TRY(Joints joints, read_skins(document, instances));
   CommonAttributes common = find_common_attributes(meshes, document.count("skins") > 0);
+
+  for (auto& [mesh, primitives] : meshes)
+    for (Primitive& primitive : primitives) primitive.sheet = number_sheets(primitive, common.layouts);
 
   SoupFile file;
   file.soup.attributes = std::move(common.layouts);

@@ -18,6 +18,7 @@ struct Primitive {
   std::vector<Attribute> attributes;  ///< see PrimitiveContent
   std::vector<Attribute> targets;     ///< morph targets, see PrimitiveContent
   std::vector<Index> indices;         ///< three per triangle, < positions.size()
+  std::vector<Index> sheet;           ///< one per point or empty: points of one are alike in attributes that get lost
   Index material = 0;                 ///< the document's material + 1; 0: none
   std::size_t number = 0;             ///< its place among the mesh's primitives
 };
