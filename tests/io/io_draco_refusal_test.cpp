@@ -51,9 +51,12 @@ struct Trial {
   EncodedAsset encode(int refusals) {
     refusals_left = refusals;
     AssetOptions options;
-    options.measure = [&](std::span<std::vector<AssetLevel>> meshes) { seen = meshes[0]; };
-    auto asset = encode_scene(scene, std::span(&mesh, 1), options);
+    options.keep_decoded = true;
+    auto geometry = encode_geometry(scene, std::span(&mesh, 1), options);
     refusals_left = 0;
+    REQUIRE(geometry);
+    seen = geometry->levels()[0];
+    auto asset = write_asset(std::move(*geometry));
     REQUIRE(asset);
     return std::move(*asset);
   }
