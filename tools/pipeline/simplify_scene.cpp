@@ -44,7 +44,9 @@ Result<SimplifyResult> simplify_mesh(const Scene& scene, std::size_t mesh, const
                                      StageProgress& progress) {
   LODESTONE_TRY(SimplifyOptions options, options_for(scene, scene.meshes()[mesh], build));
   options.progress = [&](double share) { return progress.update(mesh, share); };
-  return simplify(scene.meshes()[mesh].mesh, options);
+  Result<SimplifyResult> result = simplify(scene.meshes()[mesh].mesh, options);
+  progress.update(mesh, 1);
+  return result;
 }
 
 }  // namespace
