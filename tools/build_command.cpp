@@ -183,10 +183,11 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->group(group);
   app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
   app.add_flag("--no-draco", no_draco, "Write plain geometry that needs no decoder")->group(group);
-  CLI::Option* bits = app.add_option("--qp", position_bits, "Bits of a Draco position (default 14, more where the shape needs them)")
-                          ->check(CLI::Range(1, 30))
-                          ->type_name("BITS")
-                          ->group(group);
+  CLI::Option* bits =
+      app.add_option("--qp", position_bits, "Bits of a Draco position (default 14, more where the shape needs them)")
+          ->check(CLI::Range(1, 30))
+          ->type_name("BITS")
+          ->group(group);
   CLI::Option* step =
       app.add_option("--grid-step", grid_step,
                      "Round Draco positions to multiples of this, in the meshes' own units, instead of a "

@@ -46,9 +46,9 @@ struct BuildCommand {
   bool no_stream = false;
   bool no_draco = false;
   std::optional<int> position_bits;  ///< unset: 14, or what the shape needs
-  std::optional<double> grid_step;  ///< in place of bits
+  std::optional<double> grid_step;   ///< in place of bits
   std::vector<double> grid_origin{0, 0, 0};
-  std::size_t thread_count = 0;    ///< 0: as many as the machine has cores
+  std::size_t thread_count = 0;  ///< 0: as many as the machine has cores
   bool quiet = false;
   bool strict = false;
 

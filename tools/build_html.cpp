@@ -62,7 +62,9 @@ Result<std::string> build_page(const BuildReport& report, const Scene& scene, bo
   Json numbers = report_json(report);
   numbers.erase("timings_ms");
   numbers.erase("peak_memory_bytes");
-  page.numbers = {{"kind", "build"}, {"report", std::move(numbers)}, {"bounds", with_bounds ? bounds_json(scene, report.build.simplified) : Json::array()}};
+  page.numbers = {{"kind", "build"},
+                  {"report", std::move(numbers)},
+                  {"bounds", with_bounds ? bounds_json(scene, report.build.simplified) : Json::array()}};
   for (std::size_t i = 0; i < report.build.levels.size(); ++i) {
     Result<Mesh> level = world_level(scene, report.build.decoded, i);
     if (!level) return tl::unexpected(level.error());

@@ -153,8 +153,8 @@ void print_table(const BuildReport& report) {
   for (const BuildResult::LeftOut& left_out : report.build.left_out)
     if (left_out.met) std::printf("one level less: it would repeat level %zu\n", left_out.level);
   if (report.build.stream.bytes > 0) {
-    std::printf("stream: %zu records in %zu rounds over a base of %zu faces, %llu bytes\n", report.build.stream.record_count,
-                report.build.stream.round_count, report.build.stream.base_face_count,
+    std::printf("stream: %zu records in %zu rounds over a base of %zu faces, %llu bytes\n",
+                report.build.stream.record_count, report.build.stream.round_count, report.build.stream.base_face_count,
                 static_cast<unsigned long long>(report.build.stream.bytes));
   }
   for (const BuildReport::OutputFile& file : report.files)

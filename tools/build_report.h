@@ -31,7 +31,7 @@ struct BuildReport {
     std::uint64_t bytes = 0;
   };
   Input input;
-  Json settings;                   ///< the options as understood
+  Json settings;  ///< the options as understood
   BuildResult build;
   std::string output_path;         ///< as given
   std::uint64_t output_bytes = 0;  ///< of all files together

@@ -30,10 +30,9 @@ struct StageLook {
   const char* name;
   double share;
 };
-constexpr std::array kStages = {StageLook{BuildStage::Simplifying, "simplifying", 0.12},
-                                StageLook{BuildStage::MakingLevels, "making levels", 0.5},
-                                StageLook{BuildStage::MeasuringLevels, "measuring levels", 0.33},
-                                StageLook{BuildStage::Writing, "writing", 0.04}};
+constexpr std::array kStages = {
+    StageLook{BuildStage::Simplifying, "simplifying", 0.12}, StageLook{BuildStage::MakingLevels, "making levels", 0.5},
+    StageLook{BuildStage::MeasuringLevels, "measuring levels", 0.33}, StageLook{BuildStage::Writing, "writing", 0.04}};
 
 /// Shows a build on the terminal.
 class BarObserver : public BuildObserver {

@@ -14,7 +14,8 @@ struct FinishedBuild {
   BuildReport report;  ///< complete only where the outcome is Done
 };
 
-/// Does what a `lodestone build` asks for: reads, builds, writes and reports. `bar` is at the beginning of this piece of the work. Errors: any; nothing is written then.
+/// Does what a `lodestone build` asks for: reads, builds, writes and reports. `bar` is at the beginning of this piece
+/// of the work. Errors: any; nothing is written then.
 Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar);
 
 }  // namespace lodestone::tool

@@ -24,7 +24,8 @@ Result<PartImportance> parse_part(const std::filesystem::path& path, const std::
     else if (name == "lock" && value.is_boolean())
       part.lock = value.get<bool>();
     else if (name == "importance" || name == "lock")
-      return malformed(path, where + ": " + name + (name == "lock" ? " is not true or false" : " is not a number of 0 or more"));
+      return malformed(
+          path, where + ": " + name + (name == "lock" ? " is not true or false" : " is not a number of 0 or more"));
     else
       return malformed(path, where + ": no setting is called " + quoted(std::string_view(name)));
   }
@@ -32,7 +33,7 @@ Result<PartImportance> parse_part(const std::filesystem::path& path, const std::
 }
 
 Result<std::map<std::string, PartImportance>> parse_parts(const std::filesystem::path& path, const std::string& member,
-                                                        const Json& json) {
+                                                          const Json& json) {
   std::map<std::string, PartImportance> parts;
   if (!json.is_object()) return malformed(path, member + " is not an object");
   for (const auto& [name, value] : json.items()) {

@@ -68,7 +68,8 @@ Result<StreamedScene> read_streams(const std::filesystem::path& path) {
     streamed.meshes.push_back(i);
     streamed.progressive.push_back(std::move(*progressive));
   }
-  if (streamed.meshes.empty()) return tl::unexpected(not_streamed(path, ErrorCode::Unsupported, "none of its meshes has one"));
+  if (streamed.meshes.empty())
+    return tl::unexpected(not_streamed(path, ErrorCode::Unsupported, "none of its meshes has one"));
   return streamed;
 }
 

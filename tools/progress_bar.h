@@ -18,8 +18,8 @@ class ProgressBar {
 
   /// Starts one of several pieces, which lasts from one share of the whole to another; `title` is shown before it.
   void start_piece(std::string title, double begin, double end);
-  /// Says how much of the piece is done, 0 to 1, and in what stage it is, e.g. "simplifying"; redraws where the stage is
-  /// another, else at most ten times a second.
+  /// Says how much of the piece is done, 0 to 1, and in what stage it is, e.g. "simplifying"; redraws where the stage
+  /// is another, else at most ten times a second.
   void update(std::string_view stage, double done);
   /// Wipes the line, so that other output starts on a clean one.
   void clear();

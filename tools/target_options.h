@@ -6,7 +6,6 @@
 #include <lodestone/core/result.h>
 #include <lodestone/pipeline/level_target.h>
 
-
 namespace CLI {
 class App;
 }

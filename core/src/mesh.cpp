@@ -112,7 +112,8 @@ Mesh pick_faces(const Mesh& mesh, std::span<const Index> faces, std::vector<Inde
     }
     if (!mesh.face_material.empty()) picked.face_material.push_back(mesh.face_material[face]);
   }
-  for (const Attribute& attribute : mesh.attributes) picked.attributes.push_back(pick_elements(attribute, source_wedge));
+  for (const Attribute& attribute : mesh.attributes)
+    picked.attributes.push_back(pick_elements(attribute, source_wedge));
   return picked;
 }
 

@@ -19,7 +19,7 @@ namespace {
 using detail::text;
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-constexpr int kMostLinks = 40;                   // where Linux gives up, too
+constexpr int kMostLinks = 40;                  // where Linux gives up, too
 constexpr std::size_t kKeptBytesOfAName = 100;  // with the tag, below the 255 of most file systems and the 143 of some
 
 std::string system_reason(int error) { return std::generic_category().message(error); }

@@ -16,8 +16,8 @@ constexpr double kCoarse = 1e-3;  // Of the diagonal: steps that one sees, ten t
 std::optional<std::string> coarse_floats(const Mesh& mesh) {
   if (mesh.face_count() == 0) return std::nullopt;
   const Box box = bounding_box(mesh);
-  const double farthest = std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
-                                    std::abs(box.high.x), std::abs(box.high.y), std::abs(box.high.z)});
+  const double farthest = std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z), std::abs(box.high.x),
+                                    std::abs(box.high.y), std::abs(box.high.z)});
   const auto largest = static_cast<float>(farthest);
   const double spacing = static_cast<double>(largest) - static_cast<double>(std::nextafter(largest, 0.0f));
   if (!(spacing > kCoarse * box.diagonal())) return std::nullopt;

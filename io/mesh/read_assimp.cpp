@@ -5,9 +5,9 @@
 #include <new>
 #include <utility>
 
-#include <assimp/Importer.hpp>
 #include <assimp/material.h>
 #include <assimp/scene.h>
+#include <assimp/Importer.hpp>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>

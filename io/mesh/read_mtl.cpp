@@ -7,8 +7,8 @@
 // and glTF's roughness is √α; without a highlight it is 1. A bump map may hold heights, as it was meant to, or normals,
 // as exporters of today write it: grey images are heights, for which glTF has no place.
 
-#include "base/bytes.h"
 #include "mesh/read_mtl.h"
+#include "base/bytes.h"
 
 #include <algorithm>
 #include <array>

@@ -61,7 +61,7 @@ struct Scene::Impl {
   std::vector<detail::MeshSource> sources;  ///< one for each of the meshes
   std::vector<detail::EmbeddedImage> images;
   std::vector<detail::Json> dropped_meshes;  ///< coarser levels that were taken out of the document
-  std::vector<AssemblyReport> dropped;  ///< of meshes without a usable triangle
+  std::vector<AssemblyReport> dropped;       ///< of meshes without a usable triangle
   std::vector<std::string> notes;
   std::vector<std::filesystem::path> files;
   bool in_metres = false;

@@ -104,8 +104,7 @@ void name_first_material(const Json& materials, Json& holder) {
 }
 
 /// Gives the meshes of the finest nodes what a coarser level shows, nothing where that has nothing left.
-void put_level_first(Json& document, std::span<const NodeChain> chains, std::size_t level,
-                     std::vector<Json>& dropped) {
+void put_level_first(Json& document, std::span<const NodeChain> chains, std::size_t level, std::vector<Json>& dropped) {
   const Json materials = document.contains("materials") ? document["materials"] : Json::array();
   std::set<std::size_t> replaced;
   for (const NodeChain& chain : chains) {

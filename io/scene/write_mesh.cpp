@@ -15,8 +15,8 @@ Result<std::vector<std::byte>> write_mesh_bytes(const Mesh& mesh, const std::fil
   if (extension == "obj") return detail::to_obj(mesh);
   if (extension == "ply") return detail::to_ply(mesh);
   if (extension == "glb") return detail::to_glb(mesh, path.stem().string());
-  return fail(ErrorCode::Unsupported, detail::text("cannot write '", path, "': the extension '", extension,
-                                                   "' is none of obj, ply and glb"));
+  return fail(ErrorCode::Unsupported,
+              detail::text("cannot write '", path, "': the extension '", extension, "' is none of obj, ply and glb"));
 }
 
 Result<void> write_mesh(const std::filesystem::path& path, const Mesh& mesh) {

@@ -15,8 +15,8 @@ class CoincidentFaces {
   /// Both outlive it; `index` is that of `mesh`.
   CoincidentFaces(const Mesh& mesh, const SurfaceIndex& index);
 
-  /// Returns the faces that are as near to a point as the nearest one found, that one alone where the mesh has no sheets
-  /// on one another. The span lasts until the next call.
+  /// Returns the faces that are as near to a point as the nearest one found, that one alone where the mesh has no
+  /// sheets on one another. The span lasts until the next call.
   std::span<const Index> as_near_as(const SurfaceIndex::Hit& hit);
 
  private:

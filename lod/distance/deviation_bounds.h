@@ -55,9 +55,7 @@ class DeviationBounds {
   };
 
   static float round_up(double value);
-  double bound() const {
-    return std::max(last_, std::min(measured_ + since_measured_.largest, since_start_.largest));
-  }
+  double bound() const { return std::max(last_, std::min(measured_ + since_measured_.largest, since_start_.largest)); }
 
   const Mesh* full_;
   double step_;
@@ -65,9 +63,9 @@ class DeviationBounds {
   std::size_t measured_faces_;
   Chain since_measured_;
   Chain since_start_;
-  double measured_ = 0;  // bound of the last measured mesh
+  double measured_ = 0;    // bound of the last measured mesh
   bool vanished_ = false;  // whether a piece has since it was measured
-  double last_ = 0;      // > 0 once nothing is left
+  double last_ = 0;        // > 0 once nothing is left
   std::vector<float> bound_;
 };
 

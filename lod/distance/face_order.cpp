@@ -1,8 +1,9 @@
-// Triangles are halved by the median of their centroids along the longest axis (Bentley, "Multidimensional binary search
-// trees used for associative searching", CACM 18(9), 1975), at multiples of powers of two. Where the halves overlap, the
-// triangles reach far for how near their centroids are: then they are halved in that one of a few ways which leaves the
-// least boxes, by a surface area heuristic as in Goldsmith and Salmon ("Automatic creation of object hierarchies for ray
-// tracing", IEEE CG&A 7(5), 1987). So long triangles part from short ones, and fans from each other.
+// Triangles are halved by the median of their centroids along the longest axis (Bentley, "Multidimensional binary
+// search trees used for associative searching", CACM 18(9), 1975), at multiples of powers of two. Where the halves
+// overlap, the triangles reach far for how near their centroids are: then they are halved in that one of a few ways
+// which leaves the least boxes, by a surface area heuristic as in Goldsmith and Salmon ("Automatic creation of object
+// hierarchies for ray tracing", IEEE CG&A 7(5), 1987). So long triangles part from short ones, and fans from each
+// other.
 
 #include "distance/face_order.h"
 

@@ -63,7 +63,7 @@ class PatchBound {
   const Mesh& surface_;
   std::vector<Index> opposite_;
   std::vector<Index> patch_;
-  std::vector<Points> points_;  // Of the patch's faces.
+  std::vector<Points> points_;        // Of the patch's faces.
   std::vector<std::uint32_t> state_;  // Per face: 2·run_ if tested in this run, + 1 if in the patch.
   std::uint32_t run_ = 0;
 };

@@ -1,5 +1,6 @@
-// Means and squares are merged as by T. F. Chan, G. H. Golub, R. J. LeVeque, "Updating formulae and a pairwise algorithm
-// for computing sample variances", COMPSTAT 1982, which does not cancel, however far from the origin the points lie.
+// Means and squares are merged as by T. F. Chan, G. H. Golub, R. J. LeVeque, "Updating formulae and a pairwise
+// algorithm for computing sample variances", COMPSTAT 1982, which does not cancel, however far from the origin the
+// points lie.
 
 #include "distance/point_spread.h"
 

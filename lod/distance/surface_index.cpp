@@ -40,7 +40,7 @@ constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each lev
 struct CentredBox {
   double centre[3] = {0, 0, 0};
   double half[3] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-                   -std::numeric_limits<double>::infinity()};
+                    -std::numeric_limits<double>::infinity()};
 };
 
 using Local = std::array<double, 3>;
@@ -188,8 +188,8 @@ struct SurfaceIndex::Impl {
 
 namespace {
 
-/// One search on its way: the nearest point so far, and how far it still has to look. With a list it looks for all faces
-/// within the limit.
+/// One search on its way: the nearest point so far, and how far it still has to look. With a list it looks for all
+/// faces within the limit.
 class Search {
  public:
   Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit, std::vector<Index>* all = nullptr)
@@ -298,8 +298,8 @@ void SurfaceIndex::Impl::build_nodes() {
   std::size_t child_count = triangles.size();
   do {
     const std::vector<Run> below = std::exchange(runs, {});
-    add_level(child_size, child_count, [&](std::size_t i) { return child_size > 1 ? below[i] : run_of(triangles[i]); },
-              runs);
+    add_level(
+        child_size, child_count, [&](std::size_t i) { return child_size > 1 ? below[i] : run_of(triangles[i]); }, runs);
     child_size *= kWidth;
     child_count = runs.size();
   } while (child_count > 1);
@@ -376,7 +376,8 @@ SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 __attribute__((target_clones("avx2", "default"), flatten))
 #endif
-SurfaceIndex::Hit SurfaceIndex::nearest(const Vec3& p, double limit, Index hint) const {
+SurfaceIndex::Hit
+SurfaceIndex::nearest(const Vec3& p, double limit, Index hint) const {
   Search search(*impl_, p, limit);
   if (empty()) return search.result();
   assert(hint == kNoIndex || hint < impl_->places.size());

@@ -219,8 +219,7 @@ void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
   const SeamedSurface surface(original);
   const WedgeFinder finder(original);
   std::vector<std::vector<float>> values;
-  for (const Attribute& a : original.attributes)
-    values.push_back(stays(a) ? std::vector<float>() : finite_values(a));
+  for (const Attribute& a : original.attributes) values.push_back(stays(a) ? std::vector<float>() : finite_values(a));
   for (Index w = 0; w < level.wedge_count(); ++w) {
     const Index v = level.wedge_vertex[w];
     if (level.positions[v] == before.positions[v]) continue;

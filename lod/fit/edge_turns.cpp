@@ -150,7 +150,7 @@ class EdgeTurner {
   Grouping samples_of_face_;
   TextureAreas textures_;
   std::span<const std::uint8_t> fixed_;  // by vertex
-  std::vector<std::uint8_t> taken_;  // by face
+  std::vector<std::uint8_t> taken_;      // by face
   std::vector<std::pair<Index, Index>> added_;
   std::vector<Quad> quads_;  // of the edge looked at: one in each sheet
 };

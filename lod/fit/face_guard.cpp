@@ -7,8 +7,8 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinCosine = 0.5;  // of the angle a face may turn by in one go
-constexpr double kMinShape = 0.02;  // a face's height over its longest edge
+constexpr double kMinCosine = 0.5;     // of the angle a face may turn by in one go
+constexpr double kMinShape = 0.02;     // a face's height over its longest edge
 constexpr double kSliverKeeps = 0.98;  // of its shape, in one go, where that is less
 
 constexpr double kFacesWell = 0.5;     // a face that looked within 60° of the original's way …

@@ -168,8 +168,9 @@ void Fitting::assign() {
   }
 }
 
-/// Lets each vertex leave the original's box about as far as the surface around it is off: on a curved surface it stands
-/// out by what its faces lie within, while a face that stands for far more than itself would reach for all of that.
+/// Lets each vertex leave the original's box about as far as the surface around it is off: on a curved surface it
+/// stands out by what its faces lie within, while a face that stands for far more than itself would reach for all of
+/// that.
 void Fitting::fence() {
   std::vector<double> weight(level_.vertex_count(), 0);
   roam_.assign(level_.vertex_count(), 0);

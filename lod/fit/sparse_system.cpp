@@ -1,5 +1,5 @@
-// Conjugate gradients with the 3 × 3 blocks of the diagonal as preconditioner, after Hestenes, Stiefel: Methods of conjugate gradients for
-// solving linear systems (1952).
+// Conjugate gradients with the 3 × 3 blocks of the diagonal as preconditioner, after Hestenes, Stiefel: Methods of
+// conjugate gradients for solving linear systems (1952).
 
 #include "fit/sparse_system.h"
 
@@ -90,8 +90,7 @@ void SparseSystem::solve(std::vector<Vec3>& x, int max_steps) const {
   std::vector<Symmetric3> inverses(count);
   for (std::size_t i = 0; i < count; ++i) inverses[i] = inverse(diagonal_[i]);
   const auto precondition = [&] {
-    for (std::size_t i = 0; i < count; ++i)
-      preconditioned[i] = inverses[i] * residual[i];
+    for (std::size_t i = 0; i < count; ++i) preconditioned[i] = inverses[i] * residual[i];
   };
   multiply(x, image);
   for (std::size_t i = 0; i < count; ++i) residual[i] = right_[i] - image[i];

@@ -10,8 +10,8 @@
 
 namespace lodestone::detail {
 
-/// A symmetric, positive definite system whose unknowns are one point for each vertex; entries off the diagonal exist for
-/// pairs of vertices that share a face.
+/// A symmetric, positive definite system whose unknowns are one point for each vertex; entries off the diagonal exist
+/// for pairs of vertices that share a face.
 class SparseSystem {
  public:
   /// `corner_vertex`: three vertices for each face.

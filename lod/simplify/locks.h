@@ -8,7 +8,8 @@
 
 namespace lodestone::detail {
 
-/// Returns which vertices the options keep, by vertex; empty where that is none. Copies of a vertex are locked together.
+/// Returns which vertices the options keep, by vertex; empty where that is none. Copies of a vertex are locked
+/// together.
 std::vector<std::uint8_t> find_locked(const Connectivity& connectivity, const SimplifyOptions& options);
 
 }  // namespace lodestone::detail

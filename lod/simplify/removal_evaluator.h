@@ -58,9 +58,9 @@ using Removal = std::vector<RemovalRecord>;
 
 /// Finds the best way to remove a vertex, and what it costs.
 ///
-/// Interior vertices and those on a line leave a hole that is retriangulated. Corners move to a neighbour. The copies of
-/// a vertex that was cut into sheets go together: where the sheets coincide their holes are filled alike, elsewhere all
-/// move to one place.
+/// Interior vertices and those on a line leave a hole that is retriangulated. Corners move to a neighbour. The copies
+/// of a vertex that was cut into sheets go together: where the sheets coincide their holes are filled alike, elsewhere
+/// all move to one place.
 ///
 /// Keeps scratch memory of one star: one object for each thread.
 class RemovalEvaluator {

@@ -14,7 +14,8 @@ namespace {
 std::vector<std::byte> read_all(std::FILE* file) {
   std::vector<std::byte> bytes;
   std::byte part[4096];
-  while (const std::size_t count = std::fread(part, 1, sizeof part, file)) bytes.insert(bytes.end(), part, part + count);
+  while (const std::size_t count = std::fread(part, 1, sizeof part, file))
+    bytes.insert(bytes.end(), part, part + count);
   return bytes;
 }
 

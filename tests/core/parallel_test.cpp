@@ -97,7 +97,8 @@ TEST_CASE("the exception of the lowest job that throws reaches the caller, throu
                 for_each_in_parallel(10, [&](std::size_t) { for_each_in_parallel(100, fail_from(first)); });
               }) == expected);
       });
-      CHECK(thrown_by([&] { with_threads(threads, [&] { for_each_in_parallel(100, fail_from(first)); }); }) == expected);
+      CHECK(thrown_by([&] { with_threads(threads, [&] { for_each_in_parallel(100, fail_from(first)); }); }) ==
+            expected);
     }
 }
 

@@ -16,7 +16,8 @@ bool fan_is_simple(const Connectivity& mesh, const SectorPatch& sector, std::siz
   if (distinct.size() != size || distinct.count(vertex) != 0) return false;
   for (std::size_t i = 0; i < size; ++i) {
     const bool is_neighbour = i == apex || (i + 1) % size == apex || (apex + 1) % size == i;
-    if (!is_neighbour && mesh.has_edge(mesh.vertex_of_wedge(sector.polygon[apex]), mesh.vertex_of_wedge(sector.polygon[i])))
+    if (!is_neighbour &&
+        mesh.has_edge(mesh.vertex_of_wedge(sector.polygon[apex]), mesh.vertex_of_wedge(sector.polygon[i])))
       return false;
   }
   return true;

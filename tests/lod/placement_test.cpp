@@ -232,7 +232,8 @@ TEST_CASE("what is fixed stays bit for bit, and so do faces between fixed vertic
         std::array<Place, 3> face;
         for (Index k = 0; k < 3; ++k) face[k] = place_of(of, of.corner_vertex(3 * f + k));
         std::sort(face.begin(), face.end());
-        if (std::all_of(face.begin(), face.end(), [&](const Place& p) { return fixed.contains(p); })) faces.insert(face);
+        if (std::all_of(face.begin(), face.end(), [&](const Place& p) { return fixed.contains(p); }))
+          faces.insert(face);
       }
       return faces;
     };

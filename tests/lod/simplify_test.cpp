@@ -308,7 +308,7 @@ TEST_CASE("sheets that were cut apart are simplified together") {
 }
 
 TEST_CASE("sheets that lie on one another simplify like one of them, and lie on one another at every level") {
-  const TriangleSoup sisters[] = {grid(10, 0.05, 2),   terrain(12, 3),    icosphere(2, 0.05, 4), annulus(12, 3),
+  const TriangleSoup sisters[] = {grid(10, 0.05, 2),  terrain(12, 3),    icosphere(2, 0.05, 4), annulus(12, 3),
                                   seam_sphere(12, 8), faceted_sphere(2), skinned_cylinder(8, 6)};
   for (const TriangleSoup& sister : sisters) {
     const Mesh once = mesh_of(sister);

@@ -39,7 +39,8 @@ inline CornerBytes corner_bytes(const Mesh& mesh, Index corner) {
   return bytes;
 }
 
-/// Returns a mesh's triangles as a set of bytes: positions, attributes and materials, whatever their order and rotation.
+/// Returns a mesh's triangles as a set of bytes: positions, attributes and materials, whatever their order and
+/// rotation.
 inline std::multiset<std::pair<Index, FaceBytes>> triangle_set(const Mesh& mesh) {
   std::multiset<std::pair<Index, FaceBytes>> triangles;
   for (Index f = 0; f < mesh.face_count(); ++f) {

@@ -26,8 +26,8 @@ inline void add_square(TriangleSoup& soup, Index a, Index b, Index c, Index d) {
   add_triangle(soup, a, c, d);
 }
 
-/// The six sides of a box as n × n squares over points that `make_point(at, number)` makes of whole coordinates from 0 to
-/// n, and of the number that the point gets.
+/// The six sides of a box as n × n squares over points that `make_point(at, number)` makes of whole coordinates from 0
+/// to n, and of the number that the point gets.
 template <class MakePoint>
 TriangleSoup box_of_squares(int n, MakePoint make_point) {
   TriangleSoup soup;

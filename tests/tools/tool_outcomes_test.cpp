@@ -13,9 +13,9 @@ namespace {
 
 struct Outcome {
   const char* file;
-  int exit_code;     ///< 0: built
-  std::size_t faces; ///< that the whole mesh has
-  const char* says;  ///< part of what is printed as a warning or error; "" for nothing
+  int exit_code;      ///< 0: built
+  std::size_t faces;  ///< that the whole mesh has
+  const char* says;   ///< part of what is printed as a warning or error; "" for nothing
 };
 
 constexpr Outcome kOutcomes[] = {
@@ -69,8 +69,8 @@ void check(const Outcome& expected, const std::filesystem::path& path) {
   INFO(run.err);
   REQUIRE(run.exit_code == expected.exit_code);
   CHECK_THAT(run.err, contains(expected.says));
-  CHECK(names_in(folder.path()) == (run.exit_code == 0 ? std::vector<std::string>{"out.glb", "r.json"}
-                                                       : std::vector<std::string>{}));
+  CHECK(names_in(folder.path()) ==
+        (run.exit_code == 0 ? std::vector<std::string>{"out.glb", "r.json"} : std::vector<std::string>{}));
   if (run.exit_code != 0) return;
   CHECK(nlohmann::json::parse(file_text(report))["levels"][0]["faces"] == expected.faces);
   const std::string whole = (folder / "whole.ply").string();
@@ -89,9 +89,8 @@ TEST_CASE("the table leaves out none of the broken files") {
   LODESTONE_SKIP_WITHOUT_MODELS();
   for (const char* folder : {"nasty", "gltf-invalid"})
     for (const auto& path : mesh_files(folder)) {
-      const bool known = std::any_of(std::begin(kOutcomes), std::end(kOutcomes), [&](const Outcome& outcome) {
-        return path.string().ends_with(outcome.file);
-      });
+      const bool known = std::any_of(std::begin(kOutcomes), std::end(kOutcomes),
+                                     [&](const Outcome& outcome) { return path.string().ends_with(outcome.file); });
       INFO(path.string());
       CHECK(known);
     }

@@ -298,11 +298,13 @@ TEST_CASE("sheets that lie on one another reach every level, as good as one shee
   const ScratchDirectory folder;
   struct Expected {
     const char* name;
-    std::size_t faces;   // of the coarsest level, at most
-    double largest;      // deviation of its vertices, of the diagonal
+    std::size_t faces;  // of the coarsest level, at most
+    double largest;     // deviation of its vertices, of the diagonal
   };
-  for (const auto& [name, faces, largest] : {Expected{"doubled-faces", 4, 1e-6}, {"overlay-materials", 100, 0.012},
-                                             {"sphere-and-doubled-leaf", 111, 0.02}, {"coincident-skinned", 56, 0.15},
+  for (const auto& [name, faces, largest] : {Expected{"doubled-faces", 4, 1e-6},
+                                             {"overlay-materials", 100, 0.012},
+                                             {"sphere-and-doubled-leaf", 111, 0.02},
+                                             {"coincident-skinned", 56, 0.15},
                                              {"coincident-morphed", 28, 0.25}}) {
     INFO(name);
     const std::string in = model(std::string("field/") + name + ".glb")->string();

@@ -23,7 +23,8 @@ namespace {
 /// A .glb of those triangles of a soup that lie on one side of a plane x = `at`, moved by `shift`.
 ByteVector tile(const TriangleSoup& soup, bool left, float at, const Vec3f& shift) {
   std::vector<float> positions;
-  for (const Vec3f& p : soup.positions) positions.insert(positions.end(), {p.x + shift.x, p.y + shift.y, p.z + shift.z});
+  for (const Vec3f& p : soup.positions)
+    positions.insert(positions.end(), {p.x + shift.x, p.y + shift.y, p.z + shift.z});
   std::vector<Index> indices;
   for (std::size_t i = 0; i < soup.indices.size(); i += 3) {
     const auto lies_left = [&](Index v) { return soup.positions[v].x <= at; };
@@ -111,7 +112,8 @@ TEST_CASE("a grid that is none, or too fine for where positions lie, is refused 
     CHECK(!std::filesystem::exists(out));
     return run.err;
   };
-  CHECK_THAT(refusal({"--grid-step", "1e-10"}), contains("steps of 1e-10 from the grid's origin, more than 5.36871e+08"));
+  CHECK_THAT(refusal({"--grid-step", "1e-10"}),
+             contains("steps of 1e-10 from the grid's origin, more than 5.36871e+08"));
   CHECK_THAT(refusal({"--grid-step", "0"}), contains("--grid-step"));
   CHECK_THAT(refusal({"--grid-step", "1e-42"}), contains("the grid's step is"));
   CHECK_THAT(refusal({"--grid-step", "1", "--qp", "12"}), contains("--qp"));
@@ -121,8 +123,7 @@ TEST_CASE("a grid that is none, or too fine for where positions lie, is refused 
 TEST_CASE("the field's tiles fit together, and what importance locks stays where it was") {
   LODESTONE_SKIP_WITHOUT_MODELS();
   const auto field = *models_directory() / "field";
-  check_fit(field / "tile-left.glb", field / "tile-right.glb", 1, 0.0001F, 65,
-            {"--grid-step", "0.0001"});
+  check_fit(field / "tile-left.glb", field / "tile-right.glb", 1, 0.0001F, 65, {"--grid-step", "0.0001"});
   const auto path = field / "locked-by-importance.glb";
   const Mesh whole = Scene::read(path).value().meshes()[0].mesh;
   const Attribute& importance = whole.attributes.back();

@@ -61,8 +61,8 @@ void report_streams(const Scene& scene, BuildResult& result) {
 }
 
 /// What is known of a level before it is measured.
-void report_level(const Scene& scene, const LevelPlan& plan, std::size_t number,
-                  const std::vector<LeveledMesh>& levels, BuildResult& result) {
+void report_level(const Scene& scene, const LevelPlan& plan, std::size_t number, const std::vector<LeveledMesh>& levels,
+                  BuildResult& result) {
   const SceneChoice& choice = plan.choices[number];
   BuildResult::Level entry;
   for (std::size_t i = 0; i < levels.size(); ++i) {

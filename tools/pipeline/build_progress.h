@@ -13,7 +13,8 @@ namespace lodestone::detail {
 class StageProgress {
  public:
   /// `weights`: of the parts of the work. They are done between two shares of the stage.
-  StageProgress(BuildObserver& observer, BuildStage stage, std::vector<double> weights, double begin = 0, double end = 1);
+  StageProgress(BuildObserver& observer, BuildStage stage, std::vector<double> weights, double begin = 0,
+                double end = 1);
 
   /// Says how much of a part is done, 0 to 1; returns false where the observer wants no more.
   bool update(std::size_t part, double share);

@@ -18,8 +18,7 @@ Result<void> check_known(const std::map<std::string, PartImportance>& parts, con
                          const char* what) {
   for (const auto& [name, part] : parts)
     if (!known.contains(name))
-      return fail(ErrorCode::InvalidArgument,
-                  text("no ", what, " of the scene's meshes is called '", name, "'"));
+      return fail(ErrorCode::InvalidArgument, text("no ", what, " of the scene's meshes is called '", name, "'"));
   return {};
 }
 
@@ -36,8 +35,8 @@ Result<void> multiply_by_attribute(const SceneMesh& mesh, const Attribute& attri
     const auto first = static_cast<double>(values[w * attribute.component_count]);
     const double value = is_colour ? painted_importance(first) : first;
     if (!(value >= 0))
-      return fail(ErrorCode::InvalidArgument, text("mesh '", mesh.name, "': ", attribute.name, " has ", value,
-                                                 ", importance is 0 or more"));
+      return fail(ErrorCode::InvalidArgument,
+                  text("mesh '", mesh.name, "': ", attribute.name, " has ", value, ", importance is 0 or more"));
     largest[mesh.mesh.wedge_vertex[w]] = std::max(largest[mesh.mesh.wedge_vertex[w]], value);
   }
   for (std::size_t v = 0; v < importance.size(); ++v) importance[v] *= largest[v];
@@ -52,8 +51,8 @@ void multiply_by_materials(const SceneMesh& mesh, const Importance& parts, std::
   std::vector<double> largest(importance.size(), 0);
   for (Index face = 0; face < mesh.mesh.face_count(); ++face) {
     const Index primitive = mesh.mesh.material_of(face);
-    const auto found = primitive < mesh.materials.size() ? parts.materials.find(mesh.materials[primitive])
-                                                         : parts.materials.end();
+    const auto found =
+        primitive < mesh.materials.size() ? parts.materials.find(mesh.materials[primitive]) : parts.materials.end();
     const double value = found == parts.materials.end() ? 1 : value_of(found->second);
     for (Index k = 0; k < 3; ++k) {
       double& at = largest[mesh.mesh.corner_vertex(3 * face + k)];

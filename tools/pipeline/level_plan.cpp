@@ -50,11 +50,11 @@ std::vector<ScenePart> parts_of(const Scene& scene, const std::vector<SimplifyRe
   std::vector<ScenePart> parts;
   for (std::size_t i = 0; i < simplified.size(); ++i) {
     const SceneMesh& mesh = scene.meshes()[i];
-    parts.push_back({&simplified[i].mesh, mesh.scale, mesh.instance_count, simplified[i].stop_reason,
-                     importance_of(mesh, options.importance),
-                     world_charges(simplified[i], options.simplify.metric, mesh.scale),
-                     [&, i](Index position) { return measured_error(scene.meshes()[i], simplified[i], position, options); },
-                     kBoxGrowth * displacements[i]});
+    parts.push_back(
+        {&simplified[i].mesh, mesh.scale, mesh.instance_count, simplified[i].stop_reason,
+         importance_of(mesh, options.importance), world_charges(simplified[i], options.simplify.metric, mesh.scale),
+         [&, i](Index position) { return measured_error(scene.meshes()[i], simplified[i], position, options); },
+         kBoxGrowth * displacements[i]});
   }
   return parts;
 }

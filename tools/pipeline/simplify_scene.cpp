@@ -51,9 +51,7 @@ Result<SimplifyResult> simplify_mesh(const Scene& scene, std::size_t mesh, const
 
 }  // namespace
 
-bool writes_streams(const BuildOptions& options) {
-  return options.stream && options.layout == FileLayout::OneFile;
-}
+bool writes_streams(const BuildOptions& options) { return options.stream && options.layout == FileLayout::OneFile; }
 
 Result<std::vector<SimplifyResult>> simplify_scene(const Scene& scene, const BuildOptions& options,
                                                    BuildObserver& observer) {

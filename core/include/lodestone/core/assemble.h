@@ -55,8 +55,8 @@ struct AssembledMesh {
 /// together, so no crack opens.
 ///
 /// Where faces may be turned, all that two-face edges join winds alike afterwards, as far as a surface has two sides.
-/// Nothing is turned that winds alike already, nor against normals. Which side is the front normals say, where there are
-/// any; else nine tenths of the faces, or the shape, looking outwards, or most of the faces.
+/// Nothing is turned that winds alike already, nor against normals. Which side is the front normals say, where there
+/// are any; else nine tenths of the faces, or the shape, looking outwards, or most of the faces.
 ///
 /// Pre: array lengths agree. Errors: InvalidArgument where an index or a length is out of range. Cost: O(n log n).
 Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& options = {});

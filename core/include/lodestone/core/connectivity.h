@@ -109,9 +109,9 @@ class Connectivity {
   std::vector<Index> corner_wedge_;
   std::vector<Index> opposite_;
   std::vector<Index> vertex_corner_;
-  std::vector<Index> next_copy_;           // per vertex, empty where there are no copies
-  std::vector<Index> site_;                // the same
-  std::vector<std::uint8_t> crease_;   // per corner, empty where there are none
+  std::vector<Index> next_copy_;      // per vertex, empty where there are no copies
+  std::vector<Index> site_;           // the same
+  std::vector<std::uint8_t> crease_;  // per corner, empty where there are none
   const std::vector<Index>* wedge_vertex_ = nullptr;
   const std::vector<Index>* face_material_ = nullptr;
   std::size_t face_count_ = 0;

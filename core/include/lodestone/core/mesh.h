@@ -76,8 +76,8 @@ Box bounding_box(const Mesh& mesh);
 /// Returns a face's normal, twice as long as its area.
 Vec3 area_vector(const Mesh& mesh, Index face);
 
-/// Returns some faces as a mesh of their own, in the order given. The vertices and wedges they use are numbered in order
-/// of first use; `source_vertex`, if wanted, gets the vertices' numbers in `mesh`.
+/// Returns some faces as a mesh of their own, in the order given. The vertices and wedges they use are numbered in
+/// order of first use; `source_vertex`, if wanted, gets the vertices' numbers in `mesh`.
 Mesh pick_faces(const Mesh& mesh, std::span<const Index> faces, std::vector<Index>* source_vertex = nullptr);
 
 /// Returns the total area of the faces, in squared mesh units.

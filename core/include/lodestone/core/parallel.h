@@ -17,9 +17,9 @@ void with_threads(std::size_t thread_count, const std::function<void()>& work);
 /// of a higher i may then never run.
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& job);
 
-/// Calls `job(begin, end)` for the consecutive ranges of `chunk_size` numbers, the last one perhaps shorter, that make up
-/// 0 … count − 1. They do not depend on the number of threads: sums kept for each and joined in their order are always
-/// the same. Pre: chunk_size > 0. Exceptions as above.
+/// Calls `job(begin, end)` for the consecutive ranges of `chunk_size` numbers, the last one perhaps shorter, that make
+/// up 0 … count − 1. They do not depend on the number of threads: sums kept for each and joined in their order are
+/// always the same. Pre: chunk_size > 0. Exceptions as above.
 void for_each_chunk(std::size_t count, std::size_t chunk_size,
                     const std::function<void(std::size_t begin, std::size_t end)>& job);
 

@@ -12,7 +12,7 @@ namespace lodestone {
 
 /// One side of a removal; the rules are those of `SectorHeader` in lod: coarse face i takes the place of fine face i.
 struct SectorPatch {
-  Index center = kNoIndex;                 ///< the removed vertex's wedge on this side
+  Index center = kNoIndex;  ///< the removed vertex's wedge on this side
   SectorShape shape = SectorShape::Open;
   std::vector<Index> polygon;              ///< wedges, counter-clockwise
   std::vector<Index> faces;                ///< fine faces (v, p(i), p(i+1))

@@ -18,16 +18,16 @@ namespace lodestone {
 /// One discrete level of a mesh.
 struct AssetLevel {
   Mesh mesh;
-  Deviation deviation;         ///< measured against the full mesh; goes to extras, as the next
-  double curvature_error = 0;  ///< of the metric's own unit
-  std::string stop_reason;     ///< e.g. "faces", "error", "stuck"
-  double deviation_beyond = 0; ///< a bound on it had the level gone on to the faces asked for; 0: it did, or knows none
+  Deviation deviation;          ///< measured against the full mesh; goes to extras, as the next
+  double curvature_error = 0;   ///< of the metric's own unit
+  std::string stop_reason;      ///< e.g. "faces", "error", "stuck"
+  double deviation_beyond = 0;  ///< a bound had the level gone on to the faces asked for; 0: it did, or knows none
 };
 
 /// A grid that positions are quantised in, whatever the meshes: files made one by one agree where their meshes meet.
 struct PositionGrid {
-  Vec3f origin;   ///< mesh units, as the next
-  float step = 0; ///< > 0; no position lies farther than 2²⁹ steps from the origin
+  Vec3f origin;    ///< mesh units, as the next
+  float step = 0;  ///< > 0; no position lies farther than 2²⁹ steps from the origin
 };
 
 struct AssetOptions {
@@ -36,7 +36,8 @@ struct AssetOptions {
   /// `draco_position_error` need; where 23 do not do, positions stay the floats they are. Beyond 24, here or below,
   /// Draco codes no entropy, which would take four bytes for every step of the grid.
   std::optional<int> draco_position_bits;
-  double draco_position_error = std::numeric_limits<double>::infinity();  ///< the farthest a vertex may move, world units
+  /// The farthest that a vertex may move, world units.
+  double draco_position_error = std::numeric_limits<double>::infinity();
   std::optional<PositionGrid> draco_position_grid;  ///< in place of a grid of so many bits, fitted to the meshes
   int draco_normal_bits = 10;
   int draco_texcoord_bits = 12;  ///< of a texture's width: coordinates beyond it get more
@@ -81,15 +82,15 @@ struct EncodedAsset {
 /// A multi-LOD file as read back, its scene flattened into world space.
 struct Asset {
   struct Level {
-    Mesh mesh;                      ///< decoded from Draco or plain accessors, assembled: clean and without doubles
-    std::uint64_t face_count = 0;   ///< drawn, as stored
-    std::uint64_t vertex_count = 0; ///< drawn: of each mesh as `Scene` joins it
-    std::uint64_t byte_length = 0;  ///< of its geometry, each mesh once
-    double maximum_deviation = 0;   ///< from extras, world units: the largest of all meshes; 0 where absent
-    double mean_deviation = 0;      ///< weighted by the area that each mesh covers in the world
-    double rms_deviation = 0;       ///< weighted alike
-    double curvature_error = 0;     ///< the largest
-    double screen_coverage = 0;     ///< of the screen's height, the largest
+    Mesh mesh;                       ///< decoded from Draco or plain accessors, assembled: clean and without doubles
+    std::uint64_t face_count = 0;    ///< drawn, as stored
+    std::uint64_t vertex_count = 0;  ///< drawn: of each mesh as `Scene` joins it
+    std::uint64_t byte_length = 0;   ///< of its geometry, each mesh once
+    double maximum_deviation = 0;    ///< from extras, world units: the largest of all meshes; 0 where absent
+    double mean_deviation = 0;       ///< weighted by the area that each mesh covers in the world
+    double rms_deviation = 0;        ///< weighted alike
+    double curvature_error = 0;      ///< the largest
+    double screen_coverage = 0;      ///< of the screen's height, the largest
     bool draco = false;
   };
   struct Stream {

@@ -100,8 +100,8 @@ class EncodedGeometry {
   EncodedGeometry(EncodedGeometry&&) noexcept;
   EncodedGeometry& operator=(EncodedGeometry&&) noexcept;
 
-  /// By mesh and level, finest first: the numbers that `write_asset` will state, at first those given. The meshes are as
-  /// clients will decode them where the options keep them, otherwise empty.
+  /// By mesh and level, finest first: the numbers that `write_asset` will state, at first those given. The meshes are
+  /// as clients will decode them where the options keep them, otherwise empty.
   std::vector<std::vector<AssetLevel>>& levels();
 
   Impl& impl() { return *impl_; }

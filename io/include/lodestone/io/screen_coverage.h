@@ -22,8 +22,8 @@ struct LevelLook {
 double visible_error(const LevelLook& level);
 
 /// Returns for each level, finest first, the share of the screen's height that an object spans where the next level
-/// takes over: where that one's visible error is one pixel of `kScreenHeight`. Values are below 1 and fall strictly; the last is
-/// 0, so that nothing ever vanishes. A level that looks no worse than the one before takes over at once.
+/// takes over: where that one's visible error is one pixel of `kScreenHeight`. Values are below 1 and fall strictly;
+/// the last is 0, so that nothing ever vanishes. A level that looks no worse than the one before takes over at once.
 /// Pre: `size` is the object's longest side, `visible_errors` has one value for each level.
 std::vector<double> screen_coverages(double size, std::span<const double> visible_errors);
 

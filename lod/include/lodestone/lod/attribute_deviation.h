@@ -9,8 +9,8 @@ namespace lodestone {
 
 /// How an attribute of a level differs from the original's, over the original's area.
 ///
-/// Units: NORMAL: radians between directions. TEXCOORD_n: texture widths. TARGET_i:POSITION (morph targets): mesh units.
-/// Others: the length of the difference of their components, normalized integers in [0, 1].
+/// Units: NORMAL: radians between directions. TEXCOORD_n: texture widths. TARGET_i:POSITION (morph targets): mesh
+/// units. Others: the length of the difference of their components, normalized integers in [0, 1].
 struct AttributeDeviation {
   std::string name;
   double mean = 0;

@@ -32,8 +32,8 @@ constexpr int appended_face_count(SectorShape shape) {
 /// The faces that share a material; each group has an index buffer of its own.
 struct FaceGroup {
   Index material = 0;
-  Index face_count = 0;            ///< at full detail
-  std::vector<Index> base_corners; ///< 3 wedges for each face of the base mesh, in the canonical rotation
+  Index face_count = 0;             ///< at full detail
+  std::vector<Index> base_corners;  ///< 3 wedges for each face of the base mesh, in the canonical rotation
 };
 
 /// A base mesh and the records that refine it, coarse to fine.
@@ -56,25 +56,25 @@ struct FaceGroup {
 /// curvature_error[p] is the largest curvature error ε of the removals that lead from the full mesh to level p, in the
 /// metric's own unit. Both have record_count() + 1 entries and end with 0.
 struct ProgressiveMesh {
-  std::vector<Vec3f> positions;             ///< one per vertex
-  std::vector<Index> wedge_vertex;          ///< one per wedge, non-decreasing
-  std::vector<Attribute> attributes;        ///< each with one element per wedge
-  std::vector<FaceGroup> groups;            ///< at least one
+  std::vector<Vec3f> positions;       ///< one per vertex
+  std::vector<Index> wedge_vertex;    ///< one per wedge, non-decreasing
+  std::vector<Attribute> attributes;  ///< each with one element per wedge
+  std::vector<FaceGroup> groups;      ///< at least one
 
   Index base_vertex_count = 0;
   Index base_wedge_count = 0;
 
-  std::vector<Index> record_wedge_begin;    ///< record_count() + 1, first base_wedge_count, last wedge count
-  std::vector<Index> sector_begin;          ///< record_count() + 1, first 0
+  std::vector<Index> record_wedge_begin;  ///< record_count() + 1, first base_wedge_count, last wedge count
+  std::vector<Index> sector_begin;        ///< record_count() + 1, first 0
   std::vector<SectorHeader> sectors;
-  std::vector<std::uint64_t> polygon_begin; ///< sectors.size() + 1, first 0
-  std::vector<Index> polygons;              ///< wedges
-  std::vector<Index> slots;                 ///< faces of the sector's group
-  std::vector<std::uint8_t> triangles;      ///< 3 local polygon indices for each slot
+  std::vector<std::uint64_t> polygon_begin;  ///< sectors.size() + 1, first 0
+  std::vector<Index> polygons;               ///< wedges
+  std::vector<Index> slots;                  ///< faces of the sector's group
+  std::vector<std::uint8_t> triangles;       ///< 3 local polygon indices for each slot
 
-  std::vector<Index> round_begin;           ///< round r holds records [round_begin[r], round_begin[r+1]), coarse to fine
-  std::vector<float> deviation;             ///< record_count() + 1, mesh units
-  std::vector<float> curvature_error;       ///< record_count() + 1, radians or mesh units, by metric
+  std::vector<Index> round_begin;      ///< round r holds records [round_begin[r], round_begin[r+1]), coarse to fine
+  std::vector<float> deviation;        ///< record_count() + 1, mesh units
+  std::vector<float> curvature_error;  ///< record_count() + 1, radians or mesh units, by metric
 
   std::size_t record_count() const { return sector_begin.empty() ? 0 : sector_begin.size() - 1; }
   std::size_t vertex_count() const { return positions.size(); }
@@ -84,8 +84,8 @@ struct ProgressiveMesh {
 /// Returns the faces of every position, record_count() + 1 entries, ascending.
 std::vector<Index> face_counts(const ProgressiveMesh& mesh);
 
-/// Returns whether every piece of the mesh is there as a whole, or not at all, at a position. A piece that vanishes does
-/// so over several records, one for each of its vertices; between them stands a part of it.
+/// Returns whether every piece of the mesh is there as a whole, or not at all, at a position. A piece that vanishes
+/// does so over several records, one for each of its vertices; between them stands a part of it.
 bool is_whole(const ProgressiveMesh& mesh, Index position);
 
 /// Returns the coarsest position whose deviation bound is at most `deviation` (mesh units); record_count() at worst.

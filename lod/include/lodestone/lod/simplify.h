@@ -16,13 +16,13 @@ enum class StopReason { Faces, CurvatureError, Deviation, Stuck, Cancelled };
 
 /// What kept the remaining vertices, where the run ended for want of legal removals.
 struct BlockedCounts {
-  std::size_t locked = 0;    ///< by the options: border or importance
-  std::size_t flip = 0;      ///< every retriangulation turns a triangle over, or too far
-  std::size_t link = 0;      ///< every retriangulation repeats an edge of the mesh
-  std::size_t shape = 0;     ///< every retriangulation leaves a sliver worse than those that were there
-  std::size_t ring = 0;      ///< more neighbours than a record holds
-  std::size_t texture = 0;   ///< every retriangulation turns a texture over
-  std::size_t error = 0;     ///< free to go, but beyond a limit on the error
+  std::size_t locked = 0;   ///< by the options: border or importance
+  std::size_t flip = 0;     ///< every retriangulation turns a triangle over, or too far
+  std::size_t link = 0;     ///< every retriangulation repeats an edge of the mesh
+  std::size_t shape = 0;    ///< every retriangulation leaves a sliver worse than those that were there
+  std::size_t ring = 0;     ///< more neighbours than a record holds
+  std::size_t texture = 0;  ///< every retriangulation turns a texture over
+  std::size_t error = 0;    ///< free to go, but beyond a limit on the error
 };
 
 /// Adds up what kept the vertices of several meshes.
@@ -31,7 +31,7 @@ BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b);
 struct SimplifyResult {
   ProgressiveMesh mesh;
   StopReason stop_reason = StopReason::Stuck;
-  BlockedCounts blocked;          ///< of the base mesh's vertices
+  BlockedCounts blocked;  ///< of the base mesh's vertices
   /// By position, as `mesh.deviation`: the most that any removal between the full mesh and the position was charged. It
   /// never falls towards the base, so that meshes simplified alike can share faces by it. Mesh units, but radians for
   /// Metric::Gaussian.

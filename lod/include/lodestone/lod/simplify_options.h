@@ -27,19 +27,19 @@ enum class Reference {
 
 /// When to stop; unset limits do not stop. The first limit met ends the run.
 struct StopCriteria {
-  std::size_t min_faces = 0;                                              ///< go no lower than this face count allows
-  double max_curvature_error = std::numeric_limits<double>::infinity();   ///< the metric's own unit
-  double max_deviation = std::numeric_limits<double>::infinity();         ///< mesh units, of the two-sided bound
+  std::size_t min_faces = 0;                                             ///< go no lower than this face count allows
+  double max_curvature_error = std::numeric_limits<double>::infinity();  ///< the metric's own unit
+  double max_deviation = std::numeric_limits<double>::infinity();        ///< mesh units, of the two-sided bound
 };
 
 /// How much differences of attributes count beside distances: factors, 0 for not at all. What is compared is the
 /// attribute of a removed vertex with that of the surface in its place. A vertex's own attributes never change.
 struct AttributeWeights {
-  double normal = 0.25;   ///< NORMAL: difference of unit vectors, times the star's radius
-  double texcoord = 1;    ///< TEXCOORD_n: how far the texture slides over the surface
-  double color = 0.5;     ///< COLOR_n: difference of values, times the star's radius
-  double skin = 3;        ///< JOINTS_n, WEIGHTS_n: share of weight that goes to other joints, times the star's radius
-  double target = 3;      ///< morph targets ("TARGET_i:POSITION"): difference of displacements
+  double normal = 0.25;  ///< NORMAL: difference of unit vectors, times the star's radius
+  double texcoord = 1;   ///< TEXCOORD_n: how far the texture slides over the surface
+  double color = 0.5;    ///< COLOR_n: difference of values, times the star's radius
+  double skin = 3;       ///< JOINTS_n, WEIGHTS_n: share of weight that goes to other joints, times the star's radius
+  double target = 3;     ///< morph targets ("TARGET_i:POSITION"): difference of displacements
   /// By number i of the morph target: the largest weight that it is shown at, which multiplies `target`; 1 for others.
   std::vector<double> target_reach;
 };
@@ -55,7 +55,7 @@ struct SimplifyOptions {
   /// Hard edges by angle: where two faces' normals differ by more than this, in radians, the edge between them is kept
   /// as a line. Unset: only edges whose attributes or materials differ.
   std::optional<double> crease_angle;
-  bool lock_border = false;       ///< keep every vertex of an edge that has one face only
+  bool lock_border = false;  ///< keep every vertex of an edge that has one face only
   /// Let the last piece of the mesh go, too, so that the base mesh is empty. Smaller pieces always may.
   bool vanish = false;
   std::vector<float> importance;  ///< one per vertex of the mesh, or empty: multiplies the vertex's cost; 0 or more

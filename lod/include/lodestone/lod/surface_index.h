@@ -17,10 +17,10 @@ class SurfaceIndex {
   SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
 
   struct Hit {
-    double distance = 0;   ///< mesh units; infinity where the mesh has no faces or all lie farther than the limit
-    Vec3 point;            ///< the nearest point of the surface
-    Index face = kNoIndex; ///< the face it lies on
-    Index visits = 0;      ///< nodes opened and faces looked at on the way: what the query cost
+    double distance = 0;    ///< mesh units; infinity where the mesh has no faces or all lie farther than the limit
+    Vec3 point;             ///< the nearest point of the surface
+    Index face = kNoIndex;  ///< the face it lies on
+    Index visits = 0;       ///< nodes opened and faces looked at on the way: what the query cost
   };
   /// Returns the surface's nearest point to `p` among those no farther than `limit`; `hint` is a face likely near it.
   Hit nearest(const Vec3& p, double limit, Index hint = kNoIndex) const;

@@ -83,11 +83,11 @@ struct BuildResult {
     double write = 0;
   };
 
-  bool met = true;               ///< all targets
-  std::vector<Level> levels;     ///< finest first
+  bool met = true;            ///< all targets
+  std::vector<Level> levels;  ///< finest first
   std::vector<LeftOut> left_out;
-  Stream stream;                 ///< of all meshes together
-  std::vector<MeshPart> meshes;  ///< in the document's order
+  Stream stream;                   ///< of all meshes together
+  std::vector<MeshPart> meshes;    ///< in the document's order
   std::vector<std::string> notes;  ///< as the observer was told
   double grid_error = 0;           ///< the farthest that Draco's grid alone may move a vertex, world units
   double quantisation_error = 0;   ///< the farthest it did
@@ -108,6 +108,5 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& options,
 
 /// The same, unobserved.
 Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& options = {});
-
 
 }  // namespace lodestone

@@ -29,9 +29,9 @@ Result<void> check_names(const Importance& importance, const Scene& scene);
 /// Returns the importance of a mesh among those of its scene: the largest of its nodes'.
 double importance_of(const SceneMesh& mesh, const Importance& importance);
 
-/// Returns the importance of every vertex of a mesh, or nothing where all are 1. It is the product of what is said of its
-/// materials and nodes and of the attribute. A colour's first component c counts 16^(2c − 1), and locks at 1; any other
-/// attribute's first component counts as it is. Of several wedges or materials at a vertex the largest counts.
+/// Returns the importance of every vertex of a mesh, or nothing where all are 1. It is the product of what is said of
+/// its materials and nodes and of the attribute. A colour's first component c counts 16^(2c − 1), and locks at 1; any
+/// other attribute's first component counts as it is. Of several wedges or materials at a vertex the largest counts.
 /// Errors: InvalidArgument where an attribute's value is negative or no number.
 Result<std::vector<float>> vertex_importance(const SceneMesh& mesh, const Importance& importance);
 

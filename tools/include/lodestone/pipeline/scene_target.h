@@ -48,9 +48,10 @@ struct SceneChoice {
 
 /// Finds the positions that answer a target. Faces go where they are worth most: all parts get the coarsest level
 /// within one loss, the smallest for which the faces suffice, and what is left goes to whichever part has lost most.
-/// Where the faces do not suffice, as some parts cannot have so few, the others get their share of what those would have
-/// got, and no part goes on where its error leaps (see `position_before_leap`), by its bound and as it is measured. A target that is a wish gives way, too,
-/// where meeting it makes a part's error leap. `diagonal` is the scene's.
+/// Where the faces do not suffice, as some parts cannot have so few, the others get their share of what those would
+/// have got, and no part goes on where its error leaps (see `position_before_leap`), by its bound and as it is
+/// measured. A target that is a wish gives way, too, where meeting it makes a part's error leap. `diagonal` is the
+/// scene's.
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal);
 
