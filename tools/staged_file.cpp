@@ -60,7 +60,8 @@ StagedFile::StagedFile(fs::path destination) : destination_(std::move(destinatio
 
 StagedFile::~StagedFile() {
   std::error_code ignored;
-  if (!staged_.empty()) fs::remove(staged_, ignored);
+  for (const fs::path& leftover : {staged_, old_})
+    if (!leftover.empty()) fs::remove(leftover, ignored);
 }
 
 Result<void> StagedFile::write(std::span<const std::byte> bytes) {
@@ -76,13 +77,33 @@ Result<void> StagedFile::write(std::span<const std::byte> bytes) {
   });
 }
 
+Result<void> StagedFile::keep_old() {
+  std::error_code error;
+  if (staged_.empty() || !fs::is_regular_file(target_, error)) return {};
+  const fs::path kept = staged_name(target_);
+  fs::create_hard_link(target_, kept, error);
+  if (error) fs::copy_file(target_, kept, error);  // some file systems have no links
+  if (error) return fail(ErrorCode::NotWritten, "cannot replace " + quoted(destination_) + ": " + error.message());
+  old_ = kept;
+  return {};
+}
+
 Result<void> StagedFile::commit() {
   if (staged_.empty()) return {};
   std::error_code error;
   fs::rename(staged_, target_, error);
   if (error) return fail(ErrorCode::NotWritten, "cannot write " + quoted(destination_) + ": " + error.message());
   staged_.clear();
+  is_committed_ = true;
   return {};
+}
+
+void StagedFile::undo() {
+  if (!is_committed_) return;
+  std::error_code ignored;
+  old_.empty() ? void(fs::remove(target_, ignored)) : fs::rename(old_, target_, ignored);
+  old_.clear();
+  is_committed_ = false;
 }
 
 MadeFolders::~MadeFolders() {
@@ -124,7 +145,13 @@ bool StagedFiles::has(const fs::path& path) const {
 
 Result<void> StagedFiles::commit() {
   for (const auto& file : files_)
-    if (Result<void> done = file->commit(); !done) return done;
+    if (Result<void> kept = file->keep_old(); !kept) return kept;
+  for (const auto& file : files_) {
+    Result<void> done = file->commit();
+    if (done) continue;
+    for (const auto& other : files_) other->undo();
+    return done;
+  }
   return {};
 }
 

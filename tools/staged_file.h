@@ -26,14 +26,20 @@ class StagedFile {
 
   /// Errors: NotWritten.
   Result<void> write(std::span<const std::byte> bytes);
+  /// Keeps the file that its destination has now, for `undo`, as long as this object lives. Errors: NotWritten.
+  Result<void> keep_old();
   /// Moves the staged file to its destination. Errors: NotWritten.
   Result<void> commit();
+  /// Takes `commit` back: the destination has the kept file again, or none.
+  void undo();
   const std::filesystem::path& destination() const { return destination_; }
 
  private:
   std::filesystem::path destination_;  // as the user names it
   std::filesystem::path target_;       // where its links lead
   std::filesystem::path staged_;       // empty where nothing waits to be moved
+  std::filesystem::path old_;          // a second name of the file that was there; empty where none was
+  bool is_committed_ = false;
 };
 
 /// Folders that are made for files; those that no file came to go away again.
@@ -61,7 +67,7 @@ class StagedFiles {
   Result<void> add(const std::filesystem::path& path, const std::string& text);
   /// Whether a file was added under this path.
   bool has(const std::filesystem::path& path) const;
-  /// Errors: NotWritten.
+  /// Moves all files to their destinations, or none. Errors: NotWritten.
   Result<void> commit();
 
  private:
