@@ -10,9 +10,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <utility>
@@ -157,6 +159,17 @@ Run run_of(const Triangle& triangle) {
   return run;
 }
 
+bool same_corners(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+std::size_t hash_of(const Triangle& triangle) {
+  static_assert(sizeof(Triangle) == 9 * sizeof(std::uint32_t));
+  std::array<std::uint32_t, 9> bits;
+  std::memcpy(bits.data(), &triangle, sizeof triangle);
+  std::uint64_t hash = 0;
+  for (const std::uint32_t b : bits) hash = (hash ^ b) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
+  return static_cast<std::size_t>(hash);
+}
+
 Vec3 point(const Local& p) { return {p[0], p[1], p[2]}; }
 
 Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
@@ -170,15 +183,17 @@ Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes, double sc
 }  // namespace
 
 struct SurfaceIndex::Impl {
-  std::vector<Triangle> triangles;       // In the order of the tree.
-  std::vector<Index> faces;              // The mesh's face of each triangle.
+  std::vector<Triangle> triangles;       // In the order of the tree; of faces with the same corners one for all.
+  std::vector<Index> faces;              // The mesh's face of each triangle, the first of those with its corners.
   std::vector<Index> places;             // The triangle of each face.
+  std::vector<Index> next_copy;          // Of each face: the next one with its corners; empty where there are none.
   std::vector<Node> nodes;               // Level by level from the triangles up; node i has the children 4i … 4i + 3.
   std::vector<std::size_t> level_begin;  // The first node of each level.
   double scale = 1;                      // A power of two, which makes the mesh's box about 1 large.
 
   void set_scale(const Mesh& mesh);
   void order_faces(const Mesh& mesh);
+  std::vector<Index> find_distinct(std::span<const Triangle> all);
   void build_nodes();
   template <class RunAt>
   void add_level(std::size_t child_size, std::size_t child_count, const RunAt& run_at, std::vector<Run>& runs);
@@ -204,7 +219,7 @@ class Search {
     const double squared = squared_length(p_ - q);
     const Index face = tree_.faces[place];
     if (all_ != nullptr) {
-      if (squared <= best_squared_) all_->push_back(face);
+      if (squared <= best_squared_) list_copies(face);
       return;
     }
     if (squared > best_squared_ || (squared == best_squared_ && face >= hit_.face)) return;
@@ -230,6 +245,11 @@ class Search {
   }
 
  private:
+  void list_copies(Index face) {
+    const std::vector<Index>& next = tree_.next_copy;
+    for (; face != kNoIndex; face = next.empty() ? kNoIndex : next[face]) all_->push_back(face);
+  }
+
   struct Item {
     double distance;      // Four times the squared distance of the box.
     std::uint32_t level;  // Of the node, from 1 on.
@@ -283,12 +303,37 @@ void SurfaceIndex::Impl::set_scale(const Mesh& mesh) {
 void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
   std::vector<Triangle> all(mesh.face_count());
   for (Index f = 0; f < all.size(); ++f) all[f] = detail::triangle_of(mesh, f);
-  faces = detail::compact_order(all);
-  places.resize(faces.size());
-  for (const Index f : faces) {
-    places[f] = static_cast<Index>(triangles.size());
-    triangles.push_back(all[f]);
+  const std::vector<Index> distinct = find_distinct(all);
+  std::vector<Triangle> shown;
+  for (const Index f : distinct) shown.push_back(all[f]);
+  faces = detail::compact_order(shown);
+  places.resize(all.size());
+  for (Index& f : faces) {
+    triangles.push_back(shown[f]);
+    f = distinct[f];
+    for (Index copy = f; copy != kNoIndex; copy = next_copy.empty() ? kNoIndex : next_copy[copy])
+      places[copy] = static_cast<Index>(triangles.size() - 1);
   }
+}
+
+/// Returns the faces without those whose corners are an earlier one's, bit for bit, and links these to it: a search
+/// that has come to one of them has come to all, however many there are.
+std::vector<Index> SurfaceIndex::Impl::find_distinct(std::span<const Triangle> all) {
+  std::vector<Index> distinct, last(all.size());
+  std::vector<Index> table(std::bit_ceil(2 * all.size()), kNoIndex);
+  for (Index f = 0; f < all.size(); ++f) {
+    last[f] = f;
+    std::size_t slot = hash_of(all[f]) & (table.size() - 1);
+    while (table[slot] != kNoIndex && !same_corners(all[table[slot]], all[f])) slot = (slot + 1) & (table.size() - 1);
+    if (table[slot] == kNoIndex) {
+      table[slot] = f;
+      distinct.push_back(f);
+    } else {
+      if (next_copy.empty()) next_copy.assign(all.size(), kNoIndex);
+      next_copy[std::exchange(last[table[slot]], f)] = f;
+    }
+  }
+  return distinct;
 }
 
 void SurfaceIndex::Impl::build_nodes() {

@@ -620,4 +620,26 @@ TEST_CASE("mean, rms and maximum agree with Metro") {
   CHECK(rows >= 4);
 }
 
+TEST_CASE("faces in exactly one place cost a search no more than one of them, and all are found") {
+  constexpr Index kCopies = 3000;
+  Mesh mesh;
+  for (Index copy = 0; copy < kCopies; ++copy)
+    for (const Vec3f& p : {Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}}) {
+      mesh.corner_wedge.push_back(static_cast<Index>(mesh.positions.size()));
+      mesh.wedge_vertex.push_back(static_cast<Index>(mesh.positions.size()));
+      mesh.positions.push_back(p);
+    }
+  const SurfaceIndex index(mesh);
+  for (const Vec3& p : {Vec3{0.2, 0.2, 1}, Vec3{-1, -1, 0}, Vec3{0.3, 0.3, 0}}) {
+    const SurfaceIndex::Hit hit = index.nearest(p, kInfinity, kCopies - 1);
+    CHECK(hit.face == 0);
+    CHECK(hit.visits < 10);
+    std::vector<Index> faces;
+    index.within(p, hit.distance, faces);
+    REQUIRE(faces.size() == kCopies);
+    for (Index face = 0; face < kCopies; ++face) CHECK(faces[face] == face);
+    CHECK(index.distance_to_face(p, kCopies / 2) == hit.distance);
+  }
+}
+
 }  // namespace lodestone::test
