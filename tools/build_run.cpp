@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "file_words.h"
 #include "input_files.h"
 #include "messages.h"
+#include "pipeline/stopwatch.h"
 #include "text_table.h"
 
 namespace lodestone::tool {
@@ -160,7 +160,7 @@ std::string missed_targets(const BuildReport& report, const BuildCommand& option
 /// Reads the input and says what is otherwise in it than one would think.
 Result<Scene> read_input(const BuildCommand& options, BuildReport& report, ProgressBar& bar) {
   bar.update("reading", 0);
-  const auto begin = std::chrono::steady_clock::now();
+  detail::Stopwatch stopwatch;
   Result<Scene> scene = read_scene(options.input, options.input_format);
   bar.clear();
   if (!scene) return scene;
@@ -170,7 +170,7 @@ Result<Scene> read_input(const BuildCommand& options, BuildReport& report, Progr
   for (std::string& line : options.targets.remarks(scene->box().diagonal(), scene->in_metres()))
     lines.push_back(std::move(line));
   for (const std::string& line : lines) print_warning(quoted(options.input) + ": " + line);
-  report.reading_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  report.reading_ms = stopwatch.lap_ms();
   return scene;
 }
 

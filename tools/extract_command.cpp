@@ -96,9 +96,7 @@ Extracted extract_positions(const StreamedScene& streamed, std::span<const Index
     out.meshes.back().levels[0].mesh = mesh.mesh;
   }
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    Cursor cursor(streamed.progressive[i]);
-    cursor.seek(positions[i]);
-    out.meshes[streamed.meshes[i]].levels[0].mesh = extract_level(streamed.progressive[i], cursor);
+    out.meshes[streamed.meshes[i]].levels[0].mesh = extract_level(streamed.progressive[i], positions[i]);
     const double deviation = streamed.progressive[i].deviation[positions[i]];
     out.deviation = std::max(out.deviation, deviation * streamed.scene.meshes()[streamed.meshes[i]].scale);
   }

@@ -41,9 +41,7 @@ Result<Mesh> picture_of(const Mesh& mesh, std::size_t most_faces) {
   options.stop.min_faces = most_faces - 2;
   const Result<SimplifyResult> simplified = simplify(bare(mesh), options);
   if (!simplified) return tl::unexpected(simplified.error());
-  Cursor cursor(simplified->mesh);
-  cursor.seek(position_for_faces(simplified->mesh, most_faces));
-  return extract_level(simplified->mesh, cursor);
+  return extract_level(simplified->mesh, position_for_faces(simplified->mesh, most_faces));
 }
 
 Box box_around(const std::vector<Mesh>& meshes) {

@@ -14,11 +14,6 @@ namespace {
 
 constexpr double kUnitTolerance = 1e-3;  // Four decimals in a text file stay within it, a scaled normal does not.
 
-bool has_direction(const Vec3& v) {
-  const double size = length(v);
-  return std::isfinite(size) && size > 0;
-}
-
 void store_unit(Attribute& normals, std::size_t point, const Vec3& direction) {
   const Vec3 unit = normalized(direction);
   const Vec3f stored{static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};

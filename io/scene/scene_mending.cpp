@@ -94,7 +94,6 @@ void set_direction(Column& column, std::size_t point, const Vec3& value) {
 }
 
 bool is_unit(const Vec3& v) { return std::abs(length(v) - 1) <= kLengthTolerance; }
-bool has_direction(const Vec3& v) { return std::isfinite(length(v)) && length(v) > 0; }
 
 void mend_normals(const MeshSource& source, LevelGeometry& level) {
   const auto number = find_column(source, "NORMAL");

@@ -68,9 +68,7 @@ Result<void> add_stream(const GltfDocument& document, std::size_t number, SceneM
   LODESTONE_TRY(mesh.stream, read_stream(document, number));
   if (mesh.stream.empty() || mesh.mesh.face_count() > 0) return {};
   LODESTONE_TRY(const ProgressiveMesh whole, decode_stream(mesh.stream));
-  Cursor cursor(whole);
-  cursor.seek(static_cast<Index>(whole.record_count()));
-  mesh.mesh = extract_level(whole, cursor);
+  mesh.mesh = extract_level(whole, static_cast<Index>(whole.record_count()));
   return {};
 }
 

@@ -94,4 +94,10 @@ Mesh extract_level(const ProgressiveMesh& mesh, const Cursor& cursor) {
   return level;
 }
 
+Mesh extract_level(const ProgressiveMesh& mesh, Index position) {
+  Cursor cursor(mesh);
+  cursor.seek(position);
+  return extract_level(mesh, cursor);
+}
+
 }  // namespace lodestone

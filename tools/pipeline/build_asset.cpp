@@ -115,10 +115,10 @@ void report_layout(const AssetLayout& layout, std::size_t first, BuildResult& re
   result.position_bits = std::max(result.position_bits, layout.position_bits);
 }
 
-void keep_levels(std::vector<std::vector<AssetLevel>>& meshes, BuildResult& result) {
+void keep_levels(const std::vector<std::vector<AssetLevel>>& meshes, BuildResult& result) {
   result.decoded.resize(meshes.size());
   for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
-    for (AssetLevel& level : meshes[mesh]) result.decoded[mesh].levels.push_back(std::move(level));
+    for (const AssetLevel& level : meshes[mesh]) result.decoded[mesh].levels.push_back(level);
 }
 
 /// Encodes the levels that a file holds, measures them as they come out of it, and writes it with their numbers.
@@ -136,10 +136,8 @@ Result<void> make_file(const Scene& scene, const LevelPlan& plan, const std::vec
   result.timings_ms.levels += stopwatch.lap_ms();
   const double share = 1 / static_cast<double>(file.file_count), done = static_cast<double>(file.file);
   if (!observer.progress(BuildStage::Writing, share * done)) return cancelled();
-  std::vector<std::vector<AssetLevel>> decoded;
-  if (options.keep_levels) decoded = geometry.levels();
+  if (options.keep_levels) keep_levels(geometry.levels(), result);
   LODESTONE_TRY(EncodedAsset asset, write_asset(std::move(geometry)));
-  keep_levels(decoded, result);
   for (const std::string& note : asset.layout.notes) notes.add(note);
   report_layout(asset.layout, file.first, result);
   result.files.push_back(std::move(asset));

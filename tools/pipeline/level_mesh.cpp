@@ -1,15 +1,8 @@
 #include "pipeline/level_mesh.h"
 
-#include <lodestone/lod/cursor.h>
 #include <lodestone/lod/placement.h>
 
 namespace lodestone::detail {
-
-Mesh extract_level_at(const ProgressiveMesh& mesh, Index position) {
-  Cursor cursor(mesh);
-  cursor.seek(position);
-  return extract_level(mesh, cursor);
-}
 
 bool fits_levels(const SceneMesh& mesh, const BuildOptions& options) {
   return options.placement == Placement::Optimised && !mesh.skinned && !mesh.has_targets;

@@ -6,9 +6,6 @@
 
 namespace lodestone::detail {
 
-/// Returns a mesh's level at a position of its stream.
-Mesh extract_level_at(const ProgressiveMesh& mesh, Index position);
-
 /// Whether a mesh's levels are fitted to it. Vertices of skinned and morphed meshes take their weights and targets with
 /// them, so those stay where they are.
 bool fits_levels(const SceneMesh& mesh, const BuildOptions& options);

@@ -1,8 +1,12 @@
 #include "pipeline/level_plan.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <map>
 #include <utility>
+
+#include <lodestone/lod/cursor.h>
 
 #include "pipeline/level_measure.h"
 #include "pipeline/level_mesh.h"
@@ -38,23 +42,32 @@ std::vector<double> world_charges(const SimplifyResult& result, Metric metric, d
 /// What a level at a position really deviates by, in mesh units, but for quantisation.
 double measured_error(const SceneMesh& mesh, const SimplifyResult& simplified, Index position,
                       const BuildOptions& options) {
-  Mesh level = extract_level_at(simplified.mesh, position);
+  Mesh level = extract_level(simplified.mesh, position);
   if (fits_levels(mesh, options)) level = fitted_level(mesh, simplified, level);
   return measured_maximum(mesh.mesh, level);
 }
 
-/// What they return looks at the scene, the streams and the options.
+/// Returns what measures a mesh's levels, each once: all targets ask for the same ones.
+std::function<double(Index)> error_meter(const SceneMesh& mesh, const SimplifyResult& simplified,
+                                         const BuildOptions& options) {
+  return [&, measured = std::map<Index, double>()](Index position) mutable {
+    const auto [found, is_new] = measured.try_emplace(position);
+    if (is_new) found->second = measured_error(mesh, simplified, position, options);
+    return found->second;
+  };
+}
+
+/// What they hold looks at the scene, the streams and the options.
 std::vector<ScenePart> parts_of(const Scene& scene, const std::vector<SimplifyResult>& simplified,
                                 const BuildOptions& options) {
   const std::vector<double> displacements = quantisation_errors(scene, storage_of(scene, options));
   std::vector<ScenePart> parts;
   for (std::size_t i = 0; i < simplified.size(); ++i) {
     const SceneMesh& mesh = scene.meshes()[i];
-    parts.push_back(
-        {&simplified[i].mesh, mesh.scale, mesh.instance_count, simplified[i].stop_reason,
-         importance_of(mesh, options.importance), world_charges(simplified[i], options.simplify.metric, mesh.scale),
-         [&, i](Index position) { return measured_error(scene.meshes()[i], simplified[i], position, options); },
-         kBoxGrowth * displacements[i]});
+    parts.push_back({&simplified[i].mesh, mesh.scale, mesh.instance_count, simplified[i].stop_reason,
+                     importance_of(mesh, options.importance),
+                     world_charges(simplified[i], options.simplify.metric, mesh.scale),
+                     error_meter(mesh, simplified[i], options), kBoxGrowth * displacements[i]});
   }
   return parts;
 }

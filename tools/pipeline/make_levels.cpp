@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <lodestone/core/parallel.h>
+#include <lodestone/lod/cursor.h>
 
 #include "pipeline/build_progress.h"
 #include "pipeline/level_measure.h"
@@ -31,7 +32,7 @@ AssetLevel make_level(const LevelSource& source, const BuildOptions& options) {
   AssetLevel level;
   level.curvature_error = progressive.curvature_error[position];
   state_why(source.choice, source.mesh, level);
-  level.mesh = extract_level_at(progressive, position);
+  level.mesh = extract_level(progressive, position);
   if (!fits_levels(source.whole, options) || position == progressive.record_count()) return level;
   Mesh fitted = fitted_level(source.whole, source.simplified, level.mesh);
   const double bound = static_cast<double>(progressive.deviation[position]);

@@ -39,6 +39,12 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 inline double squared_length(const Vec3& a) { return dot(a, a); }
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
+/// Whether a vector has a direction: it is finite and not zero.
+inline bool has_direction(const Vec3& a) {
+  const double l = length(a);
+  return std::isfinite(l) && l > 0;
+}
+
 /// Returns `a` scaled to length 1, or the zero vector where `a` has no direction.
 inline Vec3 normalized(const Vec3& a) {
   const double l = length(a);

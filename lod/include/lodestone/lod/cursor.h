@@ -41,4 +41,7 @@ class Cursor {
 /// Returns the level at the cursor as a mesh of its own, with the wedges and vertices it uses.
 Mesh extract_level(const ProgressiveMesh& mesh, const Cursor& cursor);
 
+/// Returns the level at a position, clamped to record_count().
+Mesh extract_level(const ProgressiveMesh& mesh, Index position);
+
 }  // namespace lodestone
