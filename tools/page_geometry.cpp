@@ -23,11 +23,16 @@
 #include <cmath>
 #include <cstdint>
 #include <new>
-#include <unordered_map>
-#include <unordered_set>
+
+#include <lodestone/core/detail/edges.h>
 
 namespace lodestone::tool {
 namespace {
+
+using detail::Edge;
+using detail::for_each_edge;
+using detail::HalfEdge;
+using detail::sorted_edges;
 
 using Grid = std::array<std::uint16_t, 3>;
 
@@ -58,10 +63,7 @@ class GeometryEncoder {
  public:
   GeometryEncoder(const Mesh& mesh, const Box& box) : mesh_(mesh), number_(mesh.vertex_count(), kNoIndex) {
     for (const Vec3f& position : mesh.positions) grid_.push_back(quantised(position, box));
-    corner_of_edge_.reserve(mesh.corner_wedge.size());
-    for (Index corner = 0; corner < mesh.corner_wedge.size(); ++corner)
-      corner_of_edge_.emplace(edge(vertex(corner), vertex(next_corner(corner))), corner);
-    taken_.reserve(mesh.corner_wedge.size());
+    name_edges();
   }
 
   PageGeometry encode() {
@@ -76,44 +78,54 @@ class GeometryEncoder {
   }
 
  private:
-  /// An edge of a face that is there, and the face's third vertex.
-  struct OpenEdge {
-    Index from, to, third;
-  };
-
   Index vertex(Index corner) const { return mesh_.corner_vertex(corner); }
-  static std::uint64_t edge(Index from, Index to) { return std::uint64_t{from} << 32 | to; }
+
+  /// Names each direction of an edge by the first corner that it leaves.
+  void name_edges() {
+    name_.resize(mesh_.corner_wedge.size());
+    reverse_.resize(name_.size());
+    taken_.resize(name_.size());
+    const std::vector<HalfEdge> halves = sorted_edges(mesh_);
+    for_each_edge(halves, [&](Edge edge) {
+      std::array<Index, 2> first{kNoIndex, kNoIndex};  // by whether it is forward
+      for (const HalfEdge& half : edge)
+        if (Index& name = first[half.forward ? 1 : 0]; name == kNoIndex) name = half.corner;
+      if (edge[0].is_loop()) first[1] = first[0];  // its own reverse
+      for (const HalfEdge& half : edge) {
+        name_[half.corner] = first[half.forward ? 1 : 0];
+        reverse_[half.corner] = first[half.forward ? 0 : 1];
+      }
+    });
+  }
 
   void begin_piece(Index face) {
     const Index a = vertex(3 * face), b = vertex(3 * face + 1), c = vertex(3 * face + 2);
     for (const Index v : {a, b, c}) put_vertex(v, order_.empty() ? Grid{} : grid_[order_.back()]);
-    add_face(a, b, c);
-    open_.push_back({a, b, c});
-    open_.push_back({b, c, a});
-    open_.push_back({c, a, b});
+    take_face(face);
+    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) open_.push_back(corner);
   }
 
   void step(std::vector<bool>& done) {
-    const OpenEdge gate = open_.back();
+    const Index gate = open_.back();
     open_.pop_back();
-    if (taken_.contains(edge(gate.to, gate.from))) return;
-    const auto found = corner_of_edge_.find(edge(gate.to, gate.from));
-    if (found == corner_of_edge_.end() || done[face_of_corner(found->second)]) return put_symbol(1);
-    done[face_of_corner(found->second)] = true;
-    const Index apex = vertex(previous_corner(found->second));
+    const Index found = reverse_[gate];
+    if (found != kNoIndex && taken_[found]) return;
+    if (found == kNoIndex || done[face_of_corner(found)]) return put_symbol(1);
+    done[face_of_corner(found)] = true;
     Grid guess{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const int sum = grid_[gate.from][i] + grid_[gate.to][i] - grid_[gate.third][i];
+      const int sum =
+          grid_[vertex(gate)][i] + grid_[vertex(next_corner(gate))][i] - grid_[vertex(previous_corner(gate))][i];
       guess[i] = static_cast<std::uint16_t>(std::clamp(sum, 0, 65535));
     }
-    put_vertex(apex, guess);
-    add_face(gate.to, gate.from, apex);
-    open_.push_back({apex, gate.to, gate.from});
-    open_.push_back({gate.from, apex, gate.to});
+    put_vertex(vertex(previous_corner(found)), guess);
+    take_face(face_of_corner(found));
+    open_.push_back(previous_corner(found));
+    open_.push_back(next_corner(found));
   }
 
-  void add_face(Index a, Index b, Index c) {
-    for (const std::uint64_t side : {edge(a, b), edge(b, c), edge(c, a)}) taken_.insert(side);
+  void take_face(Index face) {
+    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) taken_[name_[corner]] = true;
   }
 
   void put_vertex(Index v, const Grid& guess) {
@@ -148,9 +160,10 @@ class GeometryEncoder {
   std::vector<Grid> grid_;
   std::vector<Index> number_;  // by vertex: its place in order_
   std::vector<Index> order_;
-  std::unordered_map<std::uint64_t, Index> corner_of_edge_;
-  std::unordered_set<std::uint64_t> taken_;
-  std::vector<OpenEdge> open_;
+  std::vector<Index> name_;     // by corner: the first one that leaves its edge the same way
+  std::vector<Index> reverse_;  // the same: the other way
+  std::vector<bool> taken_;     // by name: whether a face has it
+  std::vector<Index> open_;     // the edges of faces that are there, by corner
   std::vector<std::byte> symbols_;
   std::array<std::vector<std::byte>, 6> planes_;
 };

@@ -102,7 +102,7 @@ struct EdgeOf {
   double area;  // of its faces
 };
 
-/// The edges of a surface, each once.
+/// The edges of a surface, each once. Not by the table that lodestone uses: the referee has none of its code.
 std::vector<EdgeOf> edges_of(const Surface& surface) {
   std::vector<EdgeOf> edges;
   edges.reserve(surface.faces.size() * 3);

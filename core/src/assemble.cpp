@@ -8,7 +8,8 @@
 #include <span>
 #include <string>
 
-#include "edges.h"
+#include <lodestone/core/detail/edges.h>
+
 #include "fans.h"
 #include "hash_index.h"
 #include "winding.h"

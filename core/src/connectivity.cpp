@@ -9,17 +9,14 @@
 #include <string>
 #include <tuple>
 
+#include <lodestone/core/detail/edges.h>
+
 namespace lodestone {
-namespace {
 
-struct HalfEdge {
-  std::uint64_t key;  // both vertices, the smaller one in the high half
-  Index corner;       // faces the edge
-};
-
-std::uint64_t edge_key(Index a, Index b) { return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a; }
-
-}  // namespace
+using detail::Edge;
+using detail::for_each_edge;
+using detail::HalfEdge;
+using detail::sorted_edges;
 
 Result<Connectivity> Connectivity::build(const Mesh& mesh) {
   Connectivity result;
@@ -29,31 +26,26 @@ Result<Connectivity> Connectivity::build(const Mesh& mesh) {
   result.wedge_vertex_ = &mesh.wedge_vertex;
   result.face_material_ = &mesh.face_material;
   result.face_count_ = mesh.face_count();
-  if (auto joined = result.join_faces(); !joined) return tl::unexpected(joined.error());
+  if (auto joined = result.join_faces(mesh); !joined) return tl::unexpected(joined.error());
   if (auto anchored = result.anchor_vertices(); !anchored) return tl::unexpected(anchored.error());
   result.link_copies(mesh);
   return result;
 }
 
-Result<void> Connectivity::join_faces() {
-  std::vector<HalfEdge> edges(corner_wedge_.size());
-  for (Index c = 0; c < edges.size(); ++c) {
-    const Index a = vertex(next_corner(c));
-    const Index b = vertex(previous_corner(c));
-    if (a == b)
+Result<void> Connectivity::join_faces(const Mesh& mesh) {
+  for (Index c = 0; c < corner_wedge_.size(); ++c)
+    if (vertex(c) == vertex(next_corner(c)))
       return fail(ErrorCode::InvalidArgument,
-                  "face " + std::to_string(face_of_corner(c)) + " repeats vertex " + std::to_string(a));
-    edges[c] = {edge_key(a, b), c};
-  }
-  std::sort(edges.begin(), edges.end(),
-            [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.corner < b.corner; });
-  for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
-    while (j < edges.size() && edges[j].key == edges[i].key) ++j;
+                  "face " + std::to_string(face_of_corner(c)) + " repeats vertex " + std::to_string(vertex(c)));
+  const std::vector<HalfEdge> halves = sorted_edges(mesh);
+  for_each_edge(halves, [&](Edge edge) {
     // An edge of several faces, or of two that disagree on winding, stays a border of each.
-    if (j - i != 2 || vertex(next_corner(edges[i].corner)) == vertex(next_corner(edges[i + 1].corner))) continue;
-    opposite_[edges[i].corner] = edges[i + 1].corner;
-    opposite_[edges[i + 1].corner] = edges[i].corner;
-  }
+    if (edge.size() != 2 || edge[0].forward == edge[1].forward) return;
+    const Index a = previous_corner(edge[0].corner);
+    const Index b = previous_corner(edge[1].corner);
+    opposite_[a] = b;
+    opposite_[b] = a;
+  });
   return {};
 }
 

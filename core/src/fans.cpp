@@ -18,6 +18,7 @@
 #include <lodestone/core/union_find.h>
 
 #include "hash_index.h"
+#include "overlap.h"
 
 namespace lodestone::detail {
 namespace {

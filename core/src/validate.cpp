@@ -4,8 +4,15 @@
 #include <string>
 #include <vector>
 
+#include <lodestone/core/detail/edges.h>
+
 namespace lodestone {
 namespace {
+
+using detail::Edge;
+using detail::for_each_edge;
+using detail::HalfEdge;
+using detail::sort_edges;
 
 auto defect(const std::string& message) { return fail(ErrorCode::InvalidArgument, message); }
 
@@ -31,21 +38,21 @@ Result<void> check_opposite(const Connectivity& mesh, Index corner) {
 }
 
 Result<void> check_edges(const Connectivity& mesh) {
-  std::vector<std::pair<std::uint64_t, Index>> edges;
+  std::vector<HalfEdge> halves;
   for (Index c = 0; c < 3 * mesh.face_slot_count(); ++c) {
-    if (!mesh.has_face(face_of_corner(c))) continue;
-    const Index from = mesh.vertex(next_corner(c));
-    const Index to = mesh.vertex(previous_corner(c));
     // An edge that was cut where sheets meet stays a border on every side; only joined edges have to be unique.
-    if (mesh.opposite(c) != kNoIndex) edges.emplace_back(std::uint64_t{from} << 32 | to, c);
+    if (!mesh.has_face(face_of_corner(c)) || mesh.opposite(previous_corner(c)) == kNoIndex) continue;
+    halves.emplace_back(mesh.vertex(c), mesh.vertex(next_corner(c)), c);
   }
-  std::sort(edges.begin(), edges.end());
-  const auto twice =
-      std::adjacent_find(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-  if (twice != edges.end())
-    return defect("edge from vertex " + std::to_string(twice->first >> 32) + " to " +
-                  std::to_string(twice->first & kNoIndex) + " appears twice");
-  return {};
+  sort_edges(halves);
+  Index twice = kNoIndex;
+  for_each_edge(halves, [&](Edge edge) {
+    // Three halves are two of one direction at least.
+    if (edge.size() > 2 || (edge.size() == 2 && edge[0].forward == edge[1].forward)) twice = edge[0].corner;
+  });
+  if (twice == kNoIndex) return {};
+  return defect("edge between vertices " + std::to_string(mesh.vertex(twice)) + " and " +
+                std::to_string(mesh.vertex(next_corner(twice))) + " appears twice in one direction");
 }
 
 Result<void> check_fans(const Connectivity& mesh) {

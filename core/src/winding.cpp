@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "overlap.h"
+
 namespace lodestone::detail {
 namespace {
 

@@ -3,9 +3,8 @@
 #include <cstddef>
 #include <span>
 
+#include <lodestone/core/detail/edges.h>
 #include <lodestone/core/mesh.h>
-
-#include "edges.h"
 
 namespace lodestone::detail {
 

@@ -1,10 +1,12 @@
 #include "stream/stream_records.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <compare>
 #include <cstring>
 #include <utility>
+
+#include <lodestone/core/detail/edges.h>
 
 #include "base/bytes.h"
 
@@ -113,26 +115,17 @@ std::uint32_t predict_component(const ProgressiveMesh& mesh, std::size_t record,
 
 namespace {
 
-/// A corner and the edge that begins there.
-struct EdgeAtCorner {
-  Index from, to, corner;
-  auto operator<=>(const EdgeAtCorner&) const = default;
-};
-
 /// Returns, for each corner, the face across its edge. An edge that several faces of broken data have belongs to the
 /// last of them, here as in any other decoder.
 std::vector<Index> find_neighbours(std::span<const Index> corners) {
-  std::vector<EdgeAtCorner> edges;
-  for (Index c = 0; c < corners.size(); ++c) edges.push_back({corners[c], corners[next_corner(c)], c});
-  std::sort(edges.begin(), edges.end());
+  const std::vector<HalfEdge> halves = sorted_edges(corners.size(), [&](Index corner) { return corners[corner]; });
   std::vector<Index> neighbours(corners.size(), kNoIndex);
-  for (Index c = 0; c < corners.size(); ++c) {
-    const EdgeAtCorner wanted{corners[next_corner(c)], corners[c], kNoIndex};
-    const auto beyond = std::upper_bound(edges.begin(), edges.end(), wanted);
-    if (beyond == edges.begin()) continue;
-    const EdgeAtCorner& found = *std::prev(beyond);
-    if (found.from == wanted.from && found.to == wanted.to) neighbours[c] = face_of_corner(found.corner);
-  }
+  for_each_edge(halves, [&](Edge edge) {
+    std::array<Index, 2> last{kNoIndex, kNoIndex};  // by whether it is forward
+    for (const HalfEdge& half : edge) last[half.forward ? 1 : 0] = face_of_corner(half.corner);
+    if (edge[0].is_loop()) last[1] = last[0];  // its own reverse
+    for (const HalfEdge& half : edge) neighbours[half.corner] = last[half.forward ? 0 : 1];
+  });
   return neighbours;
 }
 

@@ -16,9 +16,10 @@
 #include <functional>
 #include <numbers>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
+
+#include <lodestone/core/detail/edges.h>
 
 #include "distance/coincident_faces.h"
 #include "distance/supremum.h"
@@ -28,8 +29,12 @@ namespace lodestone {
 namespace {
 
 using detail::CoincidentFaces;
+using detail::Edge;
+using detail::for_each_edge;
 using detail::Goal;
+using detail::HalfEdge;
 using detail::PatchBound;
+using detail::sorted_edges;
 using detail::SupremumSearch;
 using detail::SurfaceBounds;
 
@@ -120,35 +125,28 @@ class Samples {
     }
   }
 
-  struct Edge {
-    Index low, high, corner;
-    double area;  // Of its faces.
+  struct SampledEdge {
+    Index corner;  // The first on it.
+    double area;   // Of its faces.
   };
 
   /// Returns each edge once, however many faces it has, in the order of the faces.
-  std::vector<Edge> list_edges() const {
-    std::vector<Edge> edges(mesh_.corner_wedge.size());
-    for (Index corner = 0; corner < edges.size(); ++corner) {
-      const auto [low, high] = std::minmax({mesh_.corner_vertex(corner), mesh_.corner_vertex(next_corner(corner))});
-      edges[corner] = {low, high, corner, area_of(face_of_corner(corner))};
-    }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-      return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+  std::vector<SampledEdge> list_edges() const {
+    std::vector<SampledEdge> edges;
+    const std::vector<HalfEdge> halves = sorted_edges(mesh_);
+    for_each_edge(halves, [&](Edge edge) {
+      double area = 0;
+      for (const HalfEdge& half : edge) area += area_of(face_of_corner(half.corner));
+      edges.push_back({edge.front().corner, area});
     });
-    std::vector<Edge> distinct;
-    for (const Edge& edge : edges) {
-      if (!distinct.empty() && distinct.back().low == edge.low && distinct.back().high == edge.high)
-        distinct.back().area += edge.area;
-      else
-        distinct.push_back(edge);
-    }
-    std::sort(distinct.begin(), distinct.end(), [](const Edge& a, const Edge& b) { return a.corner < b.corner; });
-    return distinct;
+    std::sort(edges.begin(), edges.end(),
+              [](const SampledEdge& a, const SampledEdge& b) { return a.corner < b.corner; });
+    return edges;
   }
 
   /// Returns the length of all edges, in which those whose faces are narrower than `least_width` count less.
   double find_edges(double least_width) {
-    for (const Edge& edge : list_edges()) {
+    for (const SampledEdge& edge : list_edges()) {
       const Vec3 from = mesh_.corner_position(edge.corner);
       const double size = length(mesh_.corner_position(next_corner(edge.corner)) - from);
       const double narrow = edge.area < size * least_width ? edge.area / (size * least_width) : 1;

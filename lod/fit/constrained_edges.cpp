@@ -1,18 +1,15 @@
 #include "fit/constrained_edges.h"
 
 #include <algorithm>
-#include <span>
-#include <utility>
 
 #include <lodestone/core/assemble.h>
+#include <lodestone/core/detail/edges.h>
 
 namespace lodestone::detail {
 namespace {
 
-struct HalfEdge {
-  std::array<Index, 2> vertices;  // the smaller one first
-  Index corner;                   // faces the edge
-};
+/// The corner that faces the edge.
+Index facing(const HalfEdge& half) { return previous_corner(half.corner); }
 
 bool is_free(const Mesh& mesh, Index a, Index b) {
   const auto& wedge = mesh.corner_wedge;
@@ -22,11 +19,11 @@ bool is_free(const Mesh& mesh, Index a, Index b) {
 
 /// Pairs each face on one side of an edge with a neighbour on the other. Leaves the edge as it is where there are no
 /// two sides, or some face has no neighbour: then it is a line of some sheet.
-void pair_corners(const Mesh& mesh, std::span<const HalfEdge> halves, MeshEdge& edge) {
+void pair_corners(const Mesh& mesh, Edge halves, MeshEdge& edge) {
   std::vector<Index> left, right;
   const auto side = [&](Index corner) { return mesh.corner_vertex(corner); };
   for (const HalfEdge& half : halves)
-    (side(half.corner) == side(halves[0].corner) ? left : right).push_back(half.corner);
+    (side(facing(half)) == side(facing(halves[0])) ? left : right).push_back(facing(half));
   const bool two_sides = std::all_of(right.begin(), right.end(), [&](Index c) { return side(c) == side(right[0]); });
   if (left.size() != right.size() || !two_sides) return;
   std::vector<std::array<Index, 2>> pairs;
@@ -44,29 +41,21 @@ void pair_corners(const Mesh& mesh, std::span<const HalfEdge> halves, MeshEdge& 
 }  // namespace
 
 std::vector<MeshEdge> list_edges(const Mesh& mesh) {
-  std::vector<HalfEdge> halves(mesh.corner_wedge.size());
-  for (Index c = 0; c < halves.size(); ++c) {
-    const Index a = mesh.corner_vertex(next_corner(c));
-    const Index b = mesh.corner_vertex(previous_corner(c));
-    halves[c] = {{std::min(a, b), std::max(a, b)}, c};
-  }
-  std::sort(halves.begin(), halves.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.vertices != b.vertices ? a.vertices < b.vertices : a.corner < b.corner;
-  });
+  const std::vector<HalfEdge> halves = sorted_edges(mesh);
   std::vector<MeshEdge> edges;
-  for (std::size_t i = 0, j = 0; i < halves.size(); i = j) {
-    while (j < halves.size() && halves[j].vertices == halves[i].vertices) ++j;
+  for_each_edge(halves, [&](Edge half) {
     MeshEdge& edge = edges.emplace_back();
-    edge.vertices = halves[i].vertices;
+    edge.vertices = {half[0].low(), half[0].high()};
     edge.constrained = true;
-    const auto [a, b] = std::pair(halves[i].corner, halves[j - 1].corner);
-    if (j - i == 2 && mesh.corner_vertex(a) != mesh.corner_vertex(b) && is_free(mesh, a, b)) {
+    const Index a = facing(half.front());
+    const Index b = facing(half.back());
+    if (half.size() == 2 && mesh.corner_vertex(a) != mesh.corner_vertex(b) && is_free(mesh, a, b)) {
       edge.constrained = false;
       edge.corners = {a, b};
-    } else if (j - i > 2 && j - i <= kMostFacesAtEdge) {
-      pair_corners(mesh, std::span(halves).subspan(i, j - i), edge);
+    } else if (half.size() > 2 && half.size() <= kMostFacesAtEdge) {
+      pair_corners(mesh, half, edge);
     }
-  }
+  });
   return edges;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/grouping.h>
 #include <lodestone/core/detail/texture_areas.h>
 
@@ -67,7 +68,7 @@ class EdgeTurner {
       for (const Index face : q.face)
         for (const Index i : samples_of_face_[face]) place(samples_[i], q);
     }
-    added_.push_back(std::minmax(vertex(quad.c), vertex(quad.d)));
+    added_.push_back(edge_key(vertex(quad.c), vertex(quad.d)));
     return true;
   }
 
@@ -95,15 +96,14 @@ class EdgeTurner {
   /// Edges that were there at the start count even where they have been turned since: the next pass may use their
   /// place.
   bool has_edge(Index c, Index d) const {
-    const std::pair<Index, Index> wanted = std::minmax(vertex(c), vertex(d));
-    if (wanted.first == wanted.second) return true;
-    const auto found = std::lower_bound(
-        edges_.begin(), edges_.end(), wanted,
-        [](const MeshEdge& edge, const auto& key) { return std::pair(edge.vertices[0], edge.vertices[1]) < key; });
-    const bool there =
-        found != edges_.end() && found->vertices[0] == wanted.first && found->vertices[1] == wanted.second;
-    return there || std::find(added_.begin(), added_.end(), wanted) != added_.end();
+    if (vertex(c) == vertex(d)) return true;
+    const std::uint64_t wanted = edge_key(vertex(c), vertex(d));
+    const auto found = std::lower_bound(edges_.begin(), edges_.end(), wanted,
+                                        [](const MeshEdge& edge, std::uint64_t key) { return key_of(edge) < key; });
+    return (found != edges_.end() && key_of(*found) == wanted) ||
+           std::find(added_.begin(), added_.end(), wanted) != added_.end();
   }
+  static std::uint64_t key_of(const MeshEdge& edge) { return edge_key(edge.vertices[0], edge.vertices[1]); }
 
   bool keeps_shape(const Quad& q) const {
     const Vec3 a = position(q.a), b = position(q.b), c = position(q.c), d = position(q.d);
@@ -151,8 +151,8 @@ class EdgeTurner {
   TextureAreas textures_;
   std::span<const std::uint8_t> fixed_;  // by vertex
   std::vector<std::uint8_t> taken_;      // by face
-  std::vector<std::pair<Index, Index>> added_;
-  std::vector<Quad> quads_;  // of the edge looked at: one in each sheet
+  std::vector<std::uint64_t> added_;     // by their keys
+  std::vector<Quad> quads_;              // of the edge looked at: one in each sheet
 };
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include "fit/sparse_system.h"
 
 #include <algorithm>
-#include <utility>
+#include <numeric>
+
+#include <lodestone/core/detail/edges.h>
 
 namespace lodestone::detail {
 namespace {
@@ -30,22 +32,20 @@ Symmetric3 inverse(const Symmetric3& m) {
 }  // namespace
 
 SparseSystem::SparseSystem(std::size_t vertex_count, std::span<const Index> corner_vertex) {
-  std::vector<std::pair<Index, Index>> pairs;
-  for (std::size_t f = 0; f + 2 < corner_vertex.size(); f += 3)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = corner_vertex[f + k];
-      const Index b = corner_vertex[f + (k + 1) % 3];
-      pairs.emplace_back(a, b);
-      pairs.emplace_back(b, a);
-    }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  const std::vector<HalfEdge> halves = sorted_edges(corner_vertex.size(), [&](Index c) { return corner_vertex[c]; });
   row_begin_.assign(vertex_count + 1, 0);
-  for (const auto& [row, column] : pairs) {
-    ++row_begin_[row + 1];
-    column_.push_back(column);
-  }
-  for (std::size_t v = 0; v < vertex_count; ++v) row_begin_[v + 1] += row_begin_[v];
+  for_each_edge(halves, [&](Edge edge) {
+    ++row_begin_[edge[0].low()];
+    if (!edge[0].is_loop()) ++row_begin_[edge[0].high()];
+  });
+  std::exclusive_scan(row_begin_.begin(), row_begin_.end(), row_begin_.begin(), Index{0});
+  column_.resize(row_begin_.back());
+  // By the order of the edges a row gets its smaller neighbours first, then the larger ones, each ascending.
+  std::vector<Index> end(row_begin_.begin(), row_begin_.end() - 1);
+  for_each_edge(halves, [&](Edge edge) {
+    column_[end[edge[0].low()]++] = edge[0].high();
+    if (!edge[0].is_loop()) column_[end[edge[0].high()]++] = edge[0].low();
+  });
   clear();
 }
 

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <lodestone/core/detail/edges.h>
 #include <lodestone/core/ids.h>
 #include <lodestone/core/mesh.h>
 
@@ -16,7 +17,7 @@ class FeatureLines {
   /// The removed vertices that the edge between `a` and `b` stands for.
   const std::vector<Index>& removed_between(Index a, Index b) const {
     static const std::vector<Index> none;
-    const auto found = removed_.find(key(a, b));
+    const auto found = removed_.find(edge_key(a, b));
     return found == removed_.end() ? none : found->second;
   }
   /// Replaces the edges from `vertex` to `target` and to each of `others` by edges from `target` to each of the others.
@@ -27,15 +28,14 @@ class FeatureLines {
       joined.push_back(vertex);
       joined.insert(joined.end(), with_target.begin(), with_target.end());
       with_target.clear();  // one line carries them on
-      std::vector<Index>& there = removed_[key(target, other)];
+      std::vector<Index>& there = removed_[edge_key(target, other)];
       there.insert(there.end(), joined.begin(), joined.end());
     }
   }
 
  private:
-  static std::uint64_t key(Index a, Index b) { return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a; }
   std::vector<Index> take(Index a, Index b) {
-    const auto node = removed_.extract(key(a, b));
+    const auto node = removed_.extract(edge_key(a, b));
     return node.empty() ? std::vector<Index>{} : std::move(node.mapped());
   }
   std::unordered_map<std::uint64_t, std::vector<Index>> removed_;

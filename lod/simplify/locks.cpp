@@ -1,39 +1,28 @@
 #include "simplify/locks.h"
 
 #include <algorithm>
-#include <utility>
+
+#include <lodestone/core/detail/edges.h>
 
 namespace lodestone::detail {
 namespace {
 
-using Edge = std::pair<Index, Index>;  // sites, the smaller one first
-
-Edge edge_facing(const Connectivity& mesh, Index corner) {
-  return std::minmax({mesh.site(mesh.vertex(next_corner(corner))), mesh.site(mesh.vertex(previous_corner(corner)))});
+/// Whether an edge between sites has one face only, or several that lie on one another.
+bool is_border(const Connectivity& mesh, Edge edge) {
+  const auto third = [&](const HalfEdge& half) { return mesh.site(mesh.vertex(previous_corner(half.corner))); };
+  return std::all_of(edge.begin(), edge.end(), [&](const HalfEdge& half) {
+    return mesh.opposite(previous_corner(half.corner)) == kNoIndex && third(half) == third(edge.front());
+  });
 }
 
-/// Locks the sites of edges that have one face only, or several that lie on one another. Where sheets were cut apart an
-/// edge of one has others beside it.
+/// Locks the sites of borders. They are looked for among sites: where sheets were cut apart an edge of one has others
+/// beside it.
 void lock_borders(const Connectivity& mesh, std::vector<std::uint8_t>& locked) {
-  std::vector<std::pair<Edge, Index>> open;  // and the third site of the face
-  for (Index c = 0; c < 3 * mesh.face_slot_count(); ++c)
-    if (mesh.opposite(c) == kNoIndex) open.emplace_back(edge_facing(mesh, c), mesh.site(mesh.vertex(c)));
-  std::sort(open.begin(), open.end());
-  open.erase(std::unique(open.begin(), open.end()), open.end());
-  const auto is_open = [&](const Edge& edge) {
-    const auto found = std::lower_bound(open.begin(), open.end(), std::pair(edge, Index{0}));
-    return found != open.end() && found->first == edge;
-  };
-  std::vector<Edge> joined;
-  for (Index c = 0; c < 3 * mesh.face_slot_count(); ++c)
-    if (mesh.opposite(c) != kNoIndex && is_open(edge_facing(mesh, c))) joined.push_back(edge_facing(mesh, c));
-  std::sort(joined.begin(), joined.end());
-  for (std::size_t i = 0, j = 0; i < open.size(); i = j) {
-    while (j < open.size() && open[j].first == open[i].first) ++j;
-    const Edge& edge = open[i].first;
-    if (j - i > 1 || std::binary_search(joined.begin(), joined.end(), edge)) continue;
-    locked[edge.first] = locked[edge.second] = 1;
-  }
+  const std::vector<HalfEdge> halves =
+      sorted_edges(3 * mesh.face_slot_count(), [&](Index corner) { return mesh.site(mesh.vertex(corner)); });
+  for_each_edge(halves, [&](Edge edge) {
+    if (is_border(mesh, edge)) locked[edge.front().low()] = locked[edge.front().high()] = 1;
+  });
 }
 
 }  // namespace

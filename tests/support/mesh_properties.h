@@ -73,6 +73,7 @@ inline Place place_of(const Mesh& mesh, Index vertex) {
 }
 
 /// Returns the ends of all edges that only one face has, or several that lie on one another: of borders, and of cracks.
+/// By position and without the edge table: it judges meshes that this has made.
 inline std::set<Place> open_places(const Mesh& mesh) {
   std::map<std::pair<Place, Place>, std::set<Place>> beside;
   for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {

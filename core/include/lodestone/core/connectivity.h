@@ -101,7 +101,7 @@ class Connectivity {
   friend void restore_vertex(Connectivity&, const RemovalRecord&);
   friend struct PatchAccess;
 
-  Result<void> join_faces();
+  Result<void> join_faces(const Mesh& mesh);
   Result<void> anchor_vertices();
   void link_copies(const Mesh& mesh);
   Index first_corner(Index corner) const;
