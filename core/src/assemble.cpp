@@ -9,9 +9,9 @@
 #include <string>
 
 #include <lodestone/core/detail/edges.h>
+#include <lodestone/core/detail/hash_index.h>
 
 #include "fans.h"
-#include "hash_index.h"
 #include "winding.h"
 
 namespace lodestone {

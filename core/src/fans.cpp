@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/hash_index.h>
 #include <lodestone/core/union_find.h>
 
-#include "hash_index.h"
 #include "overlap.h"
 
 namespace lodestone::detail {
