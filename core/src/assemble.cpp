@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <span>
@@ -10,6 +9,7 @@
 
 #include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/hash_index.h>
+#include <lodestone/core/detail/position_index.h>
 
 #include "fans.h"
 #include "winding.h"
@@ -22,13 +22,8 @@ using detail::HalfEdge;
 using detail::HashIndex;
 using detail::make_winding_coherent;
 using detail::mix_bits;
+using detail::PositionIndex;
 using detail::sorted_edges;
-
-std::uint64_t position_hash(const Vec3f& p) {
-  // Adding zero turns −0 into +0: the two are equal and have to hash alike.
-  const auto bits = [](float f) { return std::uint64_t{std::bit_cast<std::uint32_t>(f + 0.0F)}; };
-  return mix_bits(mix_bits(mix_bits(bits(p.x)) + bits(p.y)) + bits(p.z));
-}
 
 bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -61,13 +56,9 @@ Result<void> check_lengths(const TriangleSoup& soup) {
 /// Maps each used point to the first used point at the same position.
 std::vector<Index> weld_positions(const TriangleSoup& soup, const std::vector<Index>& corners) {
   std::vector<Index> first_point(soup.positions.size(), kNoIndex);
-  HashIndex table(soup.positions.size());
-  for (const Index point : corners) {
-    if (first_point[point] != kNoIndex) continue;
-    const Vec3f& p = soup.positions[point];
-    first_point[point] =
-        table.find_or_insert(position_hash(p), point, [&](Index other) { return soup.positions[other] == p; });
-  }
+  PositionIndex table(soup.positions);
+  for (const Index point : corners)
+    if (first_point[point] == kNoIndex) first_point[point] = table.add(point);
   return first_point;
 }
 

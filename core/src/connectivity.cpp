@@ -7,15 +7,17 @@
 #include <cassert>
 #include <numeric>
 #include <string>
-#include <tuple>
+#include <utility>
 
 #include <lodestone/core/detail/edges.h>
+#include <lodestone/core/detail/position_index.h>
 
 namespace lodestone {
 
 using detail::Edge;
 using detail::for_each_edge;
 using detail::HalfEdge;
+using detail::places_of;
 using detail::sorted_edges;
 
 Result<Connectivity> Connectivity::build(const Mesh& mesh) {
@@ -77,29 +79,21 @@ Result<void> Connectivity::anchor_vertices() {
   return {};
 }
 
+/// Each vertex is the next of the last copy before it, and goes back to the first.
 void Connectivity::link_copies(const Mesh& mesh) {
-  const auto position_less = [&](Index a, Index b) {
-    const Vec3f& p = mesh.positions[a];
-    const Vec3f& q = mesh.positions[b];
-    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-  };
-  std::vector<Index> order(mesh.vertex_count());
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), position_less);
-  const auto same = [&](std::size_t i, std::size_t j) { return mesh.positions[order[i]] == mesh.positions[order[j]]; };
-  for (std::size_t i = 0, j = 0; i < order.size(); i = j) {
-    for (j = i + 1; j < order.size() && same(i, j);) ++j;
-    if (j - i == 1) continue;
+  const std::vector<Index> site = places_of(mesh.positions);
+  std::vector<Index> last(site.size());  // by site: the last of its copies so far
+  for (Index v = 0; v < site.size(); ++v) {
+    const Index before = std::exchange(last[site[v]], v);
+    if (site[v] == v) continue;
     if (next_copy_.empty()) {
-      next_copy_.resize(order.size());
+      next_copy_.resize(site.size());
       std::iota(next_copy_.begin(), next_copy_.end(), Index{0});
-      site_ = next_copy_;
     }
-    for (std::size_t k = i; k < j; ++k) {
-      next_copy_[order[k]] = order[k + 1 < j ? k + 1 : i];
-      site_[order[k]] = order[i];
-    }
+    next_copy_[before] = v;
+    next_copy_[v] = site[v];
   }
+  if (!next_copy_.empty()) site_ = site;
 }
 
 bool Connectivity::is_constrained(Index corner) const {

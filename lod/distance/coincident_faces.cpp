@@ -1,7 +1,6 @@
 #include "distance/coincident_faces.h"
 
-#include <algorithm>
-#include <array>
+#include <lodestone/core/detail/position_index.h>
 
 namespace lodestone::detail {
 namespace {
@@ -10,10 +9,10 @@ constexpr double kTolerance = 1e-6;  // of the diagonal: sheets part by the roun
 
 /// Whether vertices are copies of one another: a mesh without has no sheets that lie on one another.
 bool has_copies(const Mesh& mesh) {
-  std::vector<std::array<float, 3>> places;
-  for (const Vec3f& p : mesh.positions) places.push_back({p.x, p.y, p.z});
-  std::sort(places.begin(), places.end());
-  return std::adjacent_find(places.begin(), places.end()) != places.end();
+  const std::vector<Index> places = places_of(mesh.positions);
+  for (Index v = 0; v < places.size(); ++v)
+    if (places[v] != v) return true;
+  return false;
 }
 
 }  // namespace

@@ -6,9 +6,10 @@
 #include <lodestone/lod/level_deviation.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <vector>
+
+#include <lodestone/core/detail/position_index.h>
 
 #include "distance/supremum.h"
 #include "distance/triangle.h"
@@ -20,6 +21,7 @@ namespace {
 using detail::Anchor;
 using detail::Goal;
 using detail::PatchBound;
+using detail::PositionIndex;
 using detail::SupremumSearch;
 using detail::SurfaceBounds;
 using detail::Triangle;
@@ -27,28 +29,13 @@ using detail::Triple;
 using detail::TripleTable;
 using detail::Witnesses;
 
-Triple bits_of(const Vec3f& p) {
-  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0f); };  // The sum makes −0 equal to 0.
-  return {bits(p.x), bits(p.y), bits(p.z)};
+/// Returns the original's vertex at each vertex of `mesh`, the first where several are; kNoIndex where none is.
+std::vector<Index> find_all(const PositionIndex& vertices, const Mesh& mesh) {
+  std::vector<Index> found;
+  found.reserve(mesh.vertex_count());
+  for (const Vec3f& position : mesh.positions) found.push_back(vertices.find(position));
+  return found;
 }
-
-/// Finds the original's vertices by their positions.
-class VertexFinder {
- public:
-  explicit VertexFinder(const Mesh& original) : vertex_at_(original.vertex_count()) {
-    for (Index v = 0; v < original.vertex_count(); ++v) vertex_at_.insert(bits_of(original.positions[v]), v);
-  }
-
-  /// Returns the original's vertex at each vertex of `mesh`, the first where several are; kNoIndex where none is.
-  std::vector<Index> find_all(const Mesh& mesh) const {
-    std::vector<Index> found(mesh.vertex_count());
-    for (Index v = 0; v < found.size(); ++v) found[v] = vertex_at_.find(bits_of(mesh.positions[v]));
-    return found;
-  }
-
- private:
-  TripleTable vertex_at_;
-};
 
 /// What names a face of the original and of its levels alike: its corners in the original's vertices, ascending.
 Triple face_name(const Mesh& mesh, const std::vector<Index>& vertex_names, Index face) {
@@ -81,7 +68,7 @@ struct LevelDeviation::Impl {
   double diagonal;  // The original's.
   SurfaceIndex index;
   PatchBound patch;
-  VertexFinder vertices;
+  PositionIndex vertices;  // Of the original.
   TripleTable original_faces;
   std::vector<Index> face_at;  // A face at each of the original's vertices, by name; kNoIndex: none.
   SurfaceBounds forward;       // Of the original, to the last level.
@@ -99,11 +86,11 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
       diagonal(bounding_box(mesh).diagonal()),
       index(mesh),
       patch(mesh),
-      vertices(mesh),
+      vertices(mesh.positions),
       original_faces(mesh.face_count()),
       face_at(mesh.vertex_count(), kNoIndex),
       forward(mesh, true) {
-  const std::vector<Index> vertex_names = vertices.find_all(mesh);
+  const std::vector<Index> vertex_names = vertices.add_all();
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Triple name = face_name(mesh, vertex_names, f);
     original_faces.insert(name, f);
@@ -116,7 +103,7 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
 
 /// Carries what is known over to a new level; returns what is known of the level's own faces.
 SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
-  const std::vector<Index> vertex_names = vertices.find_all(level);
+  const std::vector<Index> vertex_names = find_all(vertices, level);
   SurfaceBounds backward(level, false);
   TripleTable faces_now(level.face_count());
   std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/hash_index.h>
 #include <lodestone/lod/deviation.h>
 
 #include "distance/face_order.h"
@@ -29,6 +29,7 @@
 namespace lodestone {
 namespace {
 
+using detail::HashIndex;
 using detail::PointSpread;
 using detail::Triangle;
 
@@ -320,17 +321,16 @@ void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
 /// that has come to one of them has come to all, however many there are.
 std::vector<Index> SurfaceIndex::Impl::find_distinct(std::span<const Triangle> all) {
   std::vector<Index> distinct, last(all.size());
-  std::vector<Index> table(std::bit_ceil(2 * all.size()), kNoIndex);
+  HashIndex table(all.size());
   for (Index f = 0; f < all.size(); ++f) {
     last[f] = f;
-    std::size_t slot = hash_of(all[f]) & (table.size() - 1);
-    while (table[slot] != kNoIndex && !same_corners(all[table[slot]], all[f])) slot = (slot + 1) & (table.size() - 1);
-    if (table[slot] == kNoIndex) {
-      table[slot] = f;
+    const Index first =
+        table.find_or_insert(hash_of(all[f]), f, [&](Index other) { return same_corners(all[other], all[f]); });
+    if (first == f) {
       distinct.push_back(f);
     } else {
       if (next_copy.empty()) next_copy.assign(all.size(), kNoIndex);
-      next_copy[std::exchange(last[table[slot]], f)] = f;
+      next_copy[std::exchange(last[first], f)] = f;
     }
   }
   return distinct;

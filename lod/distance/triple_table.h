@@ -11,7 +11,8 @@ namespace lodestone::detail {
 
 using Triple = std::array<std::uint32_t, 3>;
 
-/// A map from three 32-bit words, a position's or a face's, to an index: open addressing, linear probing.
+/// A map from three numbers, such as a face's corners, to an index: open addressing, linear probing. It keeps the
+/// numbers beside the index, to look them up fast in meshes of millions of faces.
 class TripleTable {
  public:
   /// Pre: at most `capacity` triples will be inserted.

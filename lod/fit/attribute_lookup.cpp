@@ -7,11 +7,11 @@
 #include <limits>
 #include <map>
 #include <queue>
-#include <tuple>
 #include <vector>
 
 #include <lodestone/core/detail/finite_values.h>
 #include <lodestone/core/detail/grouping.h>
+#include <lodestone/core/detail/position_index.h>
 #include <lodestone/core/detail/texture_areas.h>
 
 #include "distance/triangle.h"
@@ -103,26 +103,23 @@ bool same_bytes(const Mesh& a, Index wedge_a, const Mesh& b, Index wedge_b) {
 /// Finds the original's wedges by position and attributes.
 class WedgeFinder {
  public:
-  explicit WedgeFinder(const Mesh& original) : original_(original) {
-    for (Index w = 0; w < original.wedge_count(); ++w) wedges_.emplace_back(key(original, w), w);
-    std::sort(wedges_.begin(), wedges_.end());
+  explicit WedgeFinder(const Mesh& original) : original_(original), places_(original.positions) {
+    const std::vector<Index> place = places_.add_all();
+    wedges_ = Grouping(original.vertex_count(), original.wedge_count(),
+                       [&](Index wedge) { return place[original.wedge_vertex[wedge]]; });
   }
   Index find(const Mesh& mesh, Index wedge) const {
-    const Key wanted = key(mesh, wedge);
-    for (auto it = std::lower_bound(wedges_.begin(), wedges_.end(), std::pair(wanted, Index{0}));
-         it != wedges_.end() && it->first == wanted; ++it)
-      if (same_bytes(mesh, wedge, original_, it->second)) return it->second;
+    const Index place = places_.find(mesh.positions[mesh.wedge_vertex[wedge]]);
+    if (place == kNoIndex) return kNoIndex;
+    for (const Index candidate : wedges_[place])
+      if (same_bytes(mesh, wedge, original_, candidate)) return candidate;
     return kNoIndex;
   }
 
  private:
-  using Key = std::tuple<float, float, float>;
-  static Key key(const Mesh& mesh, Index wedge) {
-    const Vec3f& p = mesh.positions[mesh.wedge_vertex[wedge]];
-    return {p.x, p.y, p.z};
-  }
   const Mesh& original_;
-  std::vector<std::pair<Key, Index>> wedges_;
+  PositionIndex places_;
+  Grouping wedges_;  // by place
 };
 
 template <class T>

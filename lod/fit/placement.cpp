@@ -12,13 +12,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/position_index.h>
 #include <lodestone/lod/surface_index.h>
 
 #include "distance/triangle.h"
+#include "distance/triple_table.h"
 #include "fit/attribute_lookup.h"
 #include "fit/constrained_edges.h"
 #include "fit/edge_turns.h"
@@ -63,37 +64,25 @@ constexpr std::size_t kMostOfFace = 12;
 std::vector<std::uint8_t> find_fixed(const Mesh& original, const Mesh& level,
                                      const std::vector<std::uint8_t>& fixed_of_original) {
   assert(fixed_of_original.empty() || fixed_of_original.size() == original.vertex_count());
-  using Place = std::tuple<float, float, float>;
-  const auto place = [](const Vec3f& p) { return Place(p.x, p.y, p.z); };
-  std::vector<Place> places;
-  for (std::size_t v = 0; v < fixed_of_original.size(); ++v)
-    if (fixed_of_original[v] != 0) places.push_back(place(original.positions[v]));
-  std::sort(places.begin(), places.end());
+  PositionIndex places(original.positions);
+  for (Index v = 0; v < fixed_of_original.size(); ++v)
+    if (fixed_of_original[v] != 0) places.add(v);
   std::vector<std::uint8_t> fixed;
-  for (const Vec3f& p : level.positions)
-    fixed.push_back(std::binary_search(places.begin(), places.end(), place(p)) ? 1 : 0);
+  for (const Vec3f& p : level.positions) fixed.push_back(places.find(p) != kNoIndex ? 1 : 0);
   return fixed;
 }
 
 /// Leaves out faces that lie on another one, whichever way they face: what is nearest then has one direction.
 Mesh without_layers(const Mesh& mesh) {
-  using Place = std::array<float, 3>;
-  std::vector<std::pair<std::array<Place, 3>, Index>> faces;
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    std::array<Place, 3> places{};
-    for (Index k = 0; k < 3; ++k) {
-      const Vec3f& p = mesh.positions[mesh.corner_vertex(3 * f + k)];
-      places[k] = {p.x, p.y, p.z};
-    }
-    std::sort(places.begin(), places.end());
-    faces.emplace_back(places, f);
-  }
-  std::sort(faces.begin(), faces.end());
-  const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
-  faces.erase(std::unique(faces.begin(), faces.end(), same), faces.end());
+  const std::vector<Index> places = places_of(mesh.positions);
+  TripleTable seen(mesh.face_count());
   std::vector<Index> kept;
-  for (const auto& [places, face] : faces) kept.push_back(face);
-  std::sort(kept.begin(), kept.end());
+  for (Index f = 0; f < mesh.face_count(); ++f) {
+    Triple corners;
+    for (Index k = 0; k < 3; ++k) corners[k] = places[mesh.corner_vertex(3 * f + k)];
+    std::sort(corners.begin(), corners.end());
+    if (seen.insert(corners, f) == f) kept.push_back(f);
+  }
   return pick_faces(mesh, kept);
 }
 

@@ -25,14 +25,26 @@ class HashIndex {
   /// `equal(entry)` compares an earlier entry with it. Pre: at most `expected` insertions.
   template <class Equal>
   Index find_or_insert(std::uint64_t hash, Index candidate, const Equal& equal) {
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t i = hash & mask;; i = (i + 1) & mask) {
-      if (slots_[i] == kNoIndex) return slots_[i] = candidate;
-      if (equal(slots_[i])) return slots_[i];
-    }
+    Index& entry = slots_[slot_of(hash, equal)];
+    if (entry == kNoIndex) entry = candidate;
+    return entry;
+  }
+
+  /// Returns the entry equal to the one looked for; kNoIndex where there is none.
+  template <class Equal>
+  Index find(std::uint64_t hash, const Equal& equal) const {
+    return slots_[slot_of(hash, equal)];
   }
 
  private:
+  template <class Equal>
+  std::size_t slot_of(std::uint64_t hash, const Equal& equal) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t i = hash & mask;
+    while (slots_[i] != kNoIndex && !equal(slots_[i])) i = (i + 1) & mask;
+    return i;
+  }
+
   std::vector<Index> slots_;
 };
 
