@@ -24,11 +24,13 @@
 #include <cstdint>
 #include <new>
 
+#include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/edges.h>
 
 namespace lodestone::tool {
 namespace {
 
+using detail::Compaction;
 using detail::Edge;
 using detail::for_each_edge;
 using detail::HalfEdge;
@@ -61,7 +63,7 @@ Grid quantised(const Vec3f& position, const Box& box) {
 
 class GeometryEncoder {
  public:
-  GeometryEncoder(const Mesh& mesh, const Box& box) : mesh_(mesh), number_(mesh.vertex_count(), kNoIndex) {
+  GeometryEncoder(const Mesh& mesh, const Box& box) : mesh_(mesh), vertices_(mesh.vertex_count()) {
     for (const Vec3f& position : mesh.positions) grid_.push_back(quantised(position, box));
     name_edges();
   }
@@ -74,7 +76,7 @@ class GeometryEncoder {
       begin_piece(face);
       while (!open_.empty()) step(done);
     }
-    return {deflated(packed()), std::move(order_)};
+    return {deflated(packed()), vertices_.used()};
   }
 
  private:
@@ -100,7 +102,7 @@ class GeometryEncoder {
 
   void begin_piece(Index face) {
     const Index a = vertex(3 * face), b = vertex(3 * face + 1), c = vertex(3 * face + 2);
-    for (const Index v : {a, b, c}) put_vertex(v, order_.empty() ? Grid{} : grid_[order_.back()]);
+    for (const Index v : {a, b, c}) put_vertex(v, vertices_.used().empty() ? Grid{} : grid_[vertices_.used().back()]);
     take_face(face);
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) open_.push_back(corner);
   }
@@ -129,7 +131,9 @@ class GeometryEncoder {
   }
 
   void put_vertex(Index v, const Grid& guess) {
-    if (number_[v] != kNoIndex) return put_symbol(static_cast<Index>(order_.size()) - number_[v] + 1);
+    const auto count = static_cast<Index>(vertices_.used().size());
+    const Index number = vertices_.add(v);
+    if (number < count) return put_symbol(count - number + 1);
     put_symbol(0);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto difference = static_cast<std::int16_t>(static_cast<std::uint16_t>(grid_[v][i] - guess[i]));
@@ -137,8 +141,6 @@ class GeometryEncoder {
       planes_[i].push_back(static_cast<std::byte>(zigzag & 0xff));
       planes_[3 + i].push_back(static_cast<std::byte>(zigzag >> 8));
     }
-    number_[v] = static_cast<Index>(order_.size());
-    order_.push_back(v);
   }
 
   void put_symbol(Index symbol) {
@@ -148,7 +150,7 @@ class GeometryEncoder {
 
   std::vector<std::byte> packed() const {
     std::vector<std::byte> out;
-    append_u32(out, order_.size());
+    append_u32(out, vertices_.used().size());
     append_u32(out, mesh_.face_count());
     append_u32(out, symbols_.size());
     out.insert(out.end(), symbols_.begin(), symbols_.end());
@@ -158,8 +160,7 @@ class GeometryEncoder {
 
   const Mesh& mesh_;
   std::vector<Grid> grid_;
-  std::vector<Index> number_;  // by vertex: its place in order_
-  std::vector<Index> order_;
+  Compaction vertices_;
   std::vector<Index> name_;     // by corner: the first one that leaves its edge the same way
   std::vector<Index> reverse_;  // the same: the other way
   std::vector<bool> taken_;     // by name: whether a face has it

@@ -6,7 +6,9 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <utility>
 
+#include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/hash_index.h>
 #include <lodestone/core/detail/position_index.h>
@@ -17,11 +19,14 @@
 namespace lodestone {
 namespace {
 
+using detail::compacted;
+using detail::CompactedMesh;
 using detail::cut_into_fans;
 using detail::HalfEdge;
 using detail::HashIndex;
 using detail::make_winding_coherent;
 using detail::mix_bits;
+using detail::pick_entries;
 using detail::PositionIndex;
 using detail::sorted_edges;
 
@@ -181,28 +186,11 @@ void drop_duplicates(CleanFaces& faces, const std::vector<Index>& first_same, As
 /// Copies the welded points into a mesh, vertices and wedges numbered by first use.
 Mesh number_by_first_use(const TriangleSoup& soup, const CleanFaces& faces, const std::vector<Index>& first_point,
                          const std::vector<Index>& first_wedge) {
-  Mesh mesh;
-  std::vector<Index> vertex_of(soup.positions.size(), kNoIndex);
-  std::vector<Index> wedge_of(soup.positions.size(), kNoIndex);
-  std::vector<Index> source;
-  mesh.corner_wedge.reserve(faces.corners.size());
-  for (const Index point : faces.corners) {
-    Index& vertex = vertex_of[first_point[point]];
-    if (vertex == kNoIndex) {
-      vertex = static_cast<Index>(mesh.positions.size());
-      mesh.positions.push_back(soup.positions[first_point[point]]);
-    }
-    Index& wedge = wedge_of[first_wedge[point]];
-    if (wedge == kNoIndex) {
-      wedge = static_cast<Index>(mesh.wedge_vertex.size());
-      mesh.wedge_vertex.push_back(vertex);
-      source.push_back(first_wedge[point]);
-    }
-    mesh.corner_wedge.push_back(wedge);
-  }
-  mesh.face_material = faces.material;
-  for (const Attribute& attribute : soup.attributes) mesh.attributes.push_back(pick_elements(attribute, source));
-  return mesh;
+  CompactedMesh result = compacted(soup.positions, first_point, pick_entries(first_wedge, faces.corners));
+  result.mesh.face_material = faces.material;
+  for (const Attribute& attribute : soup.attributes)
+    result.mesh.attributes.push_back(pick_elements(attribute, result.source_wedge));
+  return std::move(result.mesh);
 }
 
 }  // namespace
@@ -237,8 +225,7 @@ Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& 
 
 TriangleSoup to_soup(const Mesh& mesh) {
   TriangleSoup soup;
-  soup.positions.reserve(mesh.wedge_count());
-  for (const Index vertex : mesh.wedge_vertex) soup.positions.push_back(mesh.positions[vertex]);
+  soup.positions = pick_entries(mesh.positions, mesh.wedge_vertex);
   soup.attributes = mesh.attributes;
   soup.indices = mesh.corner_wedge;
   soup.face_material = mesh.face_material;

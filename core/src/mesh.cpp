@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
+
+#include <lodestone/core/detail/compaction.h>
 
 namespace lodestone {
 
@@ -88,33 +91,16 @@ Vec3 area_vector(const Mesh& mesh, Index face) {
 }
 
 Mesh pick_faces(const Mesh& mesh, std::span<const Index> faces, std::vector<Index>* source_vertex) {
-  Mesh picked;
-  std::vector<Index> vertex_of(mesh.vertex_count(), kNoIndex);
-  std::vector<Index> wedge_of(mesh.wedge_count(), kNoIndex);
-  std::vector<Index> source_wedge;
-  picked.corner_wedge.reserve(3 * faces.size());
-  if (source_vertex != nullptr) source_vertex->clear();
-  for (const Index face : faces) {
-    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
-      const Index wedge = mesh.corner_wedge[corner];
-      Index& vertex = vertex_of[mesh.wedge_vertex[wedge]];
-      if (vertex == kNoIndex) {
-        vertex = static_cast<Index>(picked.positions.size());
-        picked.positions.push_back(mesh.positions[mesh.wedge_vertex[wedge]]);
-        if (source_vertex != nullptr) source_vertex->push_back(mesh.wedge_vertex[wedge]);
-      }
-      if (wedge_of[wedge] == kNoIndex) {
-        wedge_of[wedge] = static_cast<Index>(picked.wedge_vertex.size());
-        picked.wedge_vertex.push_back(vertex);
-        source_wedge.push_back(wedge);
-      }
-      picked.corner_wedge.push_back(wedge_of[wedge]);
-    }
-    if (!mesh.face_material.empty()) picked.face_material.push_back(mesh.face_material[face]);
-  }
+  std::vector<Index> corner_wedge;
+  corner_wedge.reserve(3 * faces.size());
+  for (const Index face : faces)
+    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) corner_wedge.push_back(mesh.corner_wedge[corner]);
+  detail::CompactedMesh picked = detail::compacted(mesh.positions, mesh.wedge_vertex, corner_wedge);
+  if (!mesh.face_material.empty()) picked.mesh.face_material = detail::pick_entries(mesh.face_material, faces);
   for (const Attribute& attribute : mesh.attributes)
-    picked.attributes.push_back(pick_elements(attribute, source_wedge));
-  return picked;
+    picked.mesh.attributes.push_back(pick_elements(attribute, picked.source_wedge));
+  if (source_vertex != nullptr) *source_vertex = std::move(picked.source_vertex);
+  return std::move(picked.mesh);
 }
 
 Box bounding_box(const Mesh& mesh) {

@@ -6,6 +6,8 @@
 
 #include <meshoptimizer.h>
 
+#include <lodestone/core/detail/compaction.h>
+
 #include "base/bytes.h"
 #include "gltf/gltf_attribute.h"
 
@@ -19,41 +21,6 @@ std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_
   for (std::size_t i = 0; i < count; ++i)
     std::copy_n(packed.begin() + i * element_bytes, element_bytes, out.begin() + i * stride);
   return out;
-}
-
-/// Numbers the things that faces use, in order of first use.
-class Compaction {
- public:
-  explicit Compaction(std::size_t count) : number_(count, kNoIndex) {}
-  Index add(Index thing) {
-    if (number_[thing] == kNoIndex) {
-      number_[thing] = static_cast<Index>(used_.size());
-      used_.push_back(thing);
-    }
-    return number_[thing];
-  }
-  std::span<const Index> used() const { return used_; }
-
- private:
-  std::vector<Index> number_;
-  std::vector<Index> used_;
-};
-
-/// Copies the wedges of `mesh` to their new numbers in `out`; ~0 means that no face uses one.
-void renumber_wedges(const Mesh& mesh, std::span<const unsigned> new_number, std::size_t used, Mesh& out) {
-  out.wedge_vertex.resize(used);
-  for (std::size_t wedge = 0; wedge < new_number.size(); ++wedge)
-    if (new_number[wedge] != ~0u) out.wedge_vertex[new_number[wedge]] = mesh.wedge_vertex[wedge];
-  for (const Attribute& source : mesh.attributes) {
-    Attribute a{source.name, source.type, source.component_count, source.normalized, {}};
-    const std::size_t size = a.element_bytes();
-    a.data.resize(used * size);
-    for (std::size_t wedge = 0; wedge < new_number.size(); ++wedge)
-      if (new_number[wedge] != ~0u)
-        std::copy_n(source.data.begin() + wedge * size, size, a.data.begin() + new_number[wedge] * size);
-    out.attributes.push_back(std::move(a));
-  }
-  for (Index& wedge : out.corner_wedge) wedge = new_number[wedge];
 }
 
 }  // namespace
@@ -72,23 +39,6 @@ std::vector<FacesOfMaterial> split_by_material(const Mesh& mesh) {
   return out;
 }
 
-Mesh in_hardware_order(const Mesh& mesh) {
-  Mesh out;
-  out.positions = mesh.positions;
-  for (const FacesOfMaterial& group : split_by_material(mesh)) {
-    std::vector<unsigned> corners(group.corner_wedge.size());
-    meshopt_optimizeVertexCache(corners.data(), group.corner_wedge.data(), corners.size(), mesh.wedge_count());
-    out.corner_wedge.insert(out.corner_wedge.end(), corners.begin(), corners.end());
-    if (!mesh.face_material.empty())
-      out.face_material.insert(out.face_material.end(), corners.size() / 3, group.material);
-  }
-  std::vector<unsigned> new_number(mesh.wedge_count());
-  const std::size_t used = meshopt_optimizeVertexFetchRemap(new_number.data(), out.corner_wedge.data(),
-                                                            out.corner_wedge.size(), mesh.wedge_count());
-  renumber_wedges(mesh, new_number, used, out);
-  return out;
-}
-
 Mesh with_attributes(const Mesh& mesh, std::span<const Attribute* const> attributes) {
   Mesh out{mesh.positions, mesh.wedge_vertex, mesh.corner_wedge, mesh.face_material, {}};
   for (const Attribute* attribute : attributes) out.attributes.push_back(*attribute);
@@ -96,19 +46,29 @@ Mesh with_attributes(const Mesh& mesh, std::span<const Attribute* const> attribu
 }
 
 Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<const Attribute* const> attributes) {
-  Compaction wedges(mesh.wedge_count()), vertices(mesh.vertex_count());
-  Mesh out;
-  for (const Index wedge : corner_wedge) out.corner_wedge.push_back(wedges.add(wedge));
-  for (const Index wedge : wedges.used()) out.wedge_vertex.push_back(vertices.add(mesh.wedge_vertex[wedge]));
-  for (const Index vertex : vertices.used()) out.positions.push_back(mesh.positions[vertex]);
-  for (const Attribute* source : attributes) out.attributes.push_back(pick_elements(*source, wedges.used()));
+  CompactedMesh out = compacted(mesh.positions, mesh.wedge_vertex, corner_wedge);
+  for (const Attribute* source : attributes) out.mesh.attributes.push_back(pick_elements(*source, out.source_wedge));
+  return std::move(out.mesh);
+}
+
+Mesh in_hardware_order(const Mesh& mesh) {
+  std::vector<Index> corner_wedge;
+  std::vector<Index> face_material;
+  for (const FacesOfMaterial& group : split_by_material(mesh)) {
+    std::vector<Index> corners(group.corner_wedge.size());
+    meshopt_optimizeVertexCache(corners.data(), group.corner_wedge.data(), corners.size(), mesh.wedge_count());
+    corner_wedge.insert(corner_wedge.end(), corners.begin(), corners.end());
+    if (!mesh.face_material.empty()) face_material.insert(face_material.end(), corners.size() / 3, group.material);
+  }
+  std::vector<const Attribute*> attributes;
+  for (const Attribute& attribute : mesh.attributes) attributes.push_back(&attribute);
+  Mesh out = submesh(mesh, corner_wedge, attributes);
+  out.face_material = std::move(face_material);
   return out;
 }
 
 std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh) {
-  std::vector<Vec3f> positions;
-  positions.reserve(mesh.wedge_count());
-  for (const Index vertex : mesh.wedge_vertex) positions.push_back(mesh.positions[vertex]);
+  const std::vector<Vec3f> positions = pick_entries(mesh.positions, mesh.wedge_vertex);
   const auto bytes = std::as_bytes(std::span(positions));
   Json accessor = {{"bufferView", builder.add_view(bytes, ViewTarget::Vertices, sizeof(Vec3f))},
                    {"componentType", static_cast<int>(ComponentType::Float32)},

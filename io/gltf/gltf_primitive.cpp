@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -97,20 +98,12 @@ std::vector<Index> to_triangles(std::vector<Index> corners, std::size_t mode, co
 
 /// Drops the points that no triangle uses: primitives often share the buffers of a whole mesh.
 void drop_unused_points(Primitive& primitive) {
-  std::vector<Index> new_number(primitive.positions.size(), kNoIndex);
-  for (const Index point : primitive.indices) new_number[point] = 0;
-  std::vector<Index> kept;
-  for (Index point = 0; point < new_number.size(); ++point) {
-    if (new_number[point] == kNoIndex) continue;
-    new_number[point] = static_cast<Index>(kept.size());
-    kept.push_back(point);
-  }
-  if (kept.size() == new_number.size()) return;
-  for (Index& point : primitive.indices) point = new_number[point];
-  for (Attribute& attribute : primitive.attributes) attribute = pick_elements(attribute, kept);
-  for (Attribute& target : primitive.targets) target = pick_elements(target, kept);
-  for (std::size_t i = 0; i < kept.size(); ++i) primitive.positions[i] = primitive.positions[kept[i]];
-  primitive.positions.resize(kept.size());
+  const Compaction points = in_old_order(primitive.positions.size(), primitive.indices);
+  if (points.used().size() == primitive.positions.size()) return;
+  for (Index& point : primitive.indices) point = points.number(point);
+  for (Attribute& attribute : primitive.attributes) attribute = pick_elements(attribute, points.used());
+  for (Attribute& target : primitive.targets) target = pick_elements(target, points.used());
+  primitive.positions = pick_entries(primitive.positions, points.used());
 }
 
 Result<Index> material_number(const Json& primitive, const GltfDocument& document, const std::string& where) {

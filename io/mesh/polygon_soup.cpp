@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -10,20 +11,6 @@
 namespace lodestone::detail {
 namespace {
 
-std::vector<Vec3f> pick_positions(const std::vector<Vec3f>& positions, std::span<const Index> numbers) {
-  std::vector<Vec3f> picked;
-  picked.reserve(numbers.size());
-  for (const Index number : numbers) picked.push_back(positions[number]);
-  return picked;
-}
-
-std::vector<Index> pick_indices(std::span<const Index> values, std::span<const Index> numbers) {
-  std::vector<Index> picked;
-  picked.reserve(numbers.size());
-  for (const Index number : numbers) picked.push_back(values[number]);
-  return picked;
-}
-
 void append_picked(std::span<const Attribute> attributes, std::span<const Index> numbers, TriangleSoup& soup) {
   for (const Attribute& attribute : attributes) soup.attributes.push_back(pick_elements(attribute, numbers));
 }
@@ -31,11 +18,11 @@ void append_picked(std::span<const Attribute> attributes, std::span<const Index>
 /// Makes a point of every corner of every triangle.
 TriangleSoup expanded(const PolygonSoup& polygons, const SplitPolygons& split) {
   TriangleSoup soup;
-  const std::vector<Index> vertices = pick_indices(polygons.corners, split.corners);
+  const std::vector<Index> vertices = pick_entries(polygons.corners, split.corners);
   std::vector<Index> faces;
   faces.reserve(split.corners.size());
   for (const Index polygon : split.polygon) faces.insert(faces.end(), 3, polygon);
-  soup.positions = pick_positions(polygons.positions, vertices);
+  soup.positions = pick_entries(polygons.positions, vertices);
   append_picked(polygons.vertex_attributes, vertices, soup);
   append_picked(polygons.corner_attributes, split.corners, soup);
   append_picked(polygons.face_attributes, faces, soup);
@@ -56,17 +43,17 @@ Result<TriangleSoup> to_triangles(PolygonSoup polygons, std::vector<std::string>
   if (polygons.positions.size() >= kNoIndex || 3 * polygons.corners.size() >= kNoIndex)  // 3 a triangle, at most
     return fail(ErrorCode::LimitExceeded, text(polygons.positions.size(), " vertices and ", polygons.corners.size(),
                                                " corners are more than 32 bits can number"));
-  const SplitPolygons split = split_polygons(pick_positions(polygons.positions, polygons.corners), polygons.sizes);
+  const SplitPolygons split = split_polygons(pick_entries(polygons.positions, polygons.corners), polygons.sizes);
   add_notes(split, notes);
   TriangleSoup soup;
   if (!polygons.corner_attributes.empty() || !polygons.face_attributes.empty()) {
     soup = expanded(polygons, split);
   } else {
-    soup.indices = pick_indices(polygons.corners, split.corners);
+    soup.indices = pick_entries(polygons.corners, split.corners);
     soup.positions = std::move(polygons.positions);
     soup.attributes = std::move(polygons.vertex_attributes);
   }
-  if (!polygons.face_material.empty()) soup.face_material = pick_indices(polygons.face_material, split.polygon);
+  if (!polygons.face_material.empty()) soup.face_material = pick_entries(polygons.face_material, split.polygon);
   return soup;
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+
+#include <lodestone/core/detail/compaction.h>
 
 #include "distance/displacement.h"
 
@@ -22,17 +25,14 @@ DeviationOptions measuring_options() {
 /// Copies the faces that are left, and the vertices they use.
 Mesh current_level(const Mesh& full, const Connectivity& current) {
   Mesh level;
-  std::vector<Index> vertex_of(full.vertex_count(), kNoIndex);
+  Compaction vertices(full.vertex_count());
   for (Index c = 0; c < 3 * current.face_slot_count(); ++c) {
     if (!current.has_face(face_of_corner(c))) continue;
-    const Index v = current.vertex(c);
-    if (vertex_of[v] == kNoIndex) {
-      vertex_of[v] = static_cast<Index>(level.positions.size());
-      level.positions.push_back(full.positions[v]);
-      level.wedge_vertex.push_back(vertex_of[v]);
-    }
-    level.corner_wedge.push_back(vertex_of[v]);
+    level.corner_wedge.push_back(vertices.add(current.vertex(c)));
   }
+  level.positions = pick_entries(full.positions, vertices.used());
+  level.wedge_vertex.resize(level.positions.size());
+  std::iota(level.wedge_vertex.begin(), level.wedge_vertex.end(), Index{0});
   return level;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/grouping.h>
 
 #include "progressive/canonical_face.h"
@@ -15,11 +16,13 @@ constexpr std::size_t kUsualRing = 7;  // a little over the mean
 
 /// New numbers of the full mesh's wedges, vertices and faces; faces are numbered within their group.
 struct RecordBuilder::Numbering {
-  std::vector<Index> vertex;
-  std::vector<Index> wedge;
+  explicit Numbering(const Mesh& full)
+      : vertices(full.vertex_count()), wedges(full.wedge_count()), face(full.face_count(), kNoIndex) {}
+
+  Compaction vertices;
+  Compaction wedges;
   std::vector<Index> face;
-  std::vector<Index> source_wedge;  // by new number
-  Grouping vertex_wedges;           // by vertex of the full mesh, the first of its copies: the wedges of all of them
+  Grouping vertex_wedges;  // by vertex of the full mesh, the first of its copies: the wedges of all of them
   std::vector<Index> group_face_count;
 };
 
@@ -75,24 +78,16 @@ void RecordBuilder::number_base(ProgressiveMesh& result, Numbering& numbers) con
   const Connectivity& base = *connectivity_;
   numbers.vertex_wedges = Grouping(mesh_->vertex_count(), mesh_->wedge_count(),
                                    [&](Index wedge) { return base.site(mesh_->wedge_vertex[wedge]); });
-  numbers.vertex.assign(mesh_->vertex_count(), kNoIndex);
-  numbers.wedge.assign(mesh_->wedge_count(), kNoIndex);
-  numbers.face.assign(mesh_->face_count(), kNoIndex);
   numbers.group_face_count.assign(materials_.size(), 0);
   for (Index v = 0; v < mesh_->vertex_count(); ++v) {
     if (!base.has_vertex(v) || base.site(v) != v) continue;
-    numbers.vertex[v] = static_cast<Index>(result.positions.size());
-    result.positions.push_back(mesh_->positions[v]);
-  }
-  result.base_vertex_count = static_cast<Index>(result.positions.size());
-  for (Index v = 0; v < mesh_->vertex_count(); ++v) {
-    if (numbers.vertex[v] == kNoIndex) continue;
+    const Index vertex = numbers.vertices.add(v);
     for (const Index wedge : numbers.vertex_wedges[v]) {
-      numbers.wedge[wedge] = static_cast<Index>(result.wedge_vertex.size());
-      numbers.source_wedge.push_back(wedge);
-      result.wedge_vertex.push_back(numbers.vertex[v]);
+      numbers.wedges.add(wedge);
+      result.wedge_vertex.push_back(vertex);
     }
   }
+  result.base_vertex_count = static_cast<Index>(numbers.vertices.used().size());
   result.base_wedge_count = static_cast<Index>(result.wedge_vertex.size());
   for (std::size_t g = 0; g < materials_.size(); ++g) result.groups.push_back({materials_[g], 0, {}});
   for (Index f = 0; f < base.face_slot_count(); ++f) {
@@ -100,22 +95,17 @@ void RecordBuilder::number_base(ProgressiveMesh& result, Numbering& numbers) con
     const Index group = group_of(f);
     numbers.face[f] = numbers.group_face_count[group]++;
     Index corners[3];
-    write_canonical(corners, numbers.wedge[base.wedge(3 * f)], numbers.wedge[base.wedge(3 * f + 1)],
-                    numbers.wedge[base.wedge(3 * f + 2)]);
+    const auto corner = [&](Index k) { return numbers.wedges.number(base.wedge(3 * f + k)); };
+    write_canonical(corners, corner(0), corner(1), corner(2));
     result.groups[group].base_corners.insert(result.groups[group].base_corners.end(), corners, corners + 3);
   }
 }
 
 void RecordBuilder::number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const {
   const Index source = vertex_[removal];
-  const auto vertex = static_cast<Index>(result.positions.size());
-  numbers.vertex[source] = vertex;
-  result.positions.push_back(mesh_->positions[source]);
+  const Index vertex = numbers.vertices.add(source);
   const auto number_wedge = [&](Index wedge) {
-    if (numbers.wedge[wedge] != kNoIndex) return;
-    numbers.wedge[wedge] = static_cast<Index>(result.wedge_vertex.size());
-    result.wedge_vertex.push_back(vertex);
-    numbers.source_wedge.push_back(wedge);
+    if (numbers.wedges.add(wedge) == result.wedge_vertex.size()) result.wedge_vertex.push_back(vertex);
   };
   for (std::size_t s = sector_begin_[removal]; s < sector_begin_[removal + 1]; ++s) {
     number_wedge(center_[s]);
@@ -135,9 +125,10 @@ void RecordBuilder::write_record(std::size_t removal, ProgressiveMesh& result, c
     header.polygon_size = static_cast<std::uint16_t>(size);
     header.group = static_cast<std::uint16_t>(group_of(faces_[face_begin_[s]]));
     header.shape = shape_[s];
-    header.wedge = static_cast<std::uint16_t>(numbers.wedge[center_[s]] - first_wedge);
+    header.wedge = static_cast<std::uint16_t>(numbers.wedges.number(center_[s]) - first_wedge);
     result.sectors.push_back(header);
-    for (std::size_t i = 0; i < size; ++i) result.polygons.push_back(numbers.wedge[polygons_[polygon_begin_[s] + i]]);
+    for (std::size_t i = 0; i < size; ++i)
+      result.polygons.push_back(numbers.wedges.number(polygons_[polygon_begin_[s] + i]));
     result.polygon_begin.push_back(result.polygons.size());
     const std::size_t first_triangle = polygon_begin_[s] - 2 * s;
     for (std::size_t i = 0; i + 2 < size; ++i) {
@@ -168,7 +159,7 @@ void RecordBuilder::write_errors(ProgressiveMesh& result, const std::vector<floa
 
 ProgressiveMesh RecordBuilder::finish(const std::vector<float>& deviation) {
   ProgressiveMesh result;
-  Numbering numbers;
+  Numbering numbers(*mesh_);
   number_base(result, numbers);
   result.sector_begin.push_back(0);
   result.polygon_begin.push_back(0);
@@ -179,8 +170,9 @@ ProgressiveMesh RecordBuilder::finish(const std::vector<float>& deviation) {
   }
   for (std::size_t g = 0; g < result.groups.size(); ++g) result.groups[g].face_count = numbers.group_face_count[g];
   write_errors(result, deviation);
+  result.positions = pick_entries(mesh_->positions, numbers.vertices.used());
   for (const Attribute& attribute : mesh_->attributes)
-    result.attributes.push_back(pick_elements(attribute, numbers.source_wedge));
+    result.attributes.push_back(pick_elements(attribute, numbers.wedges.used()));
   return result;
 }
 
