@@ -1,6 +1,8 @@
 #include <lodestone/core/mesh.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -8,72 +10,69 @@
 #include <lodestone/core/detail/compaction.h>
 
 namespace lodestone {
-
-std::size_t component_bytes(ComponentType type) {
-  switch (type) {
-    case ComponentType::Int8:
-    case ComponentType::UInt8:
-      return 1;
-    case ComponentType::Int16:
-    case ComponentType::UInt16:
-      return 2;
-    case ComponentType::UInt32:
-    case ComponentType::Float32:
-      return 4;
-  }
-  return 0;
-}
-
-double largest_component(ComponentType type) {
-  switch (type) {
-    case ComponentType::Int8:
-      return std::numeric_limits<std::int8_t>::max();
-    case ComponentType::UInt8:
-      return std::numeric_limits<std::uint8_t>::max();
-    case ComponentType::Int16:
-      return std::numeric_limits<std::int16_t>::max();
-    case ComponentType::UInt16:
-      return std::numeric_limits<std::uint16_t>::max();
-    case ComponentType::UInt32:
-      return std::numeric_limits<std::uint32_t>::max();
-    case ComponentType::Float32:
-      return 1;
-  }
-  return 1;
-}
-
 namespace {
 
-template <class T>
-std::vector<float> values_as(const Attribute& attribute) {
-  const auto unit = static_cast<float>(attribute.normalized ? largest_component(attribute.type) : 1);
-  std::vector<float> values(attribute.data.size() / sizeof(T));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    T value;
-    std::memcpy(&value, &attribute.data[i * sizeof(T)], sizeof(T));
-    values[i] = static_cast<float>(value) / unit;
+/// Calls `visit` with a value of the C++ type of a component.
+template <class Visit>
+auto with_type(ComponentType type, const Visit& visit) {
+  switch (type) {
+    case ComponentType::Int8:
+      return visit(std::int8_t{});
+    case ComponentType::UInt8:
+      return visit(std::uint8_t{});
+    case ComponentType::Int16:
+      return visit(std::int16_t{});
+    case ComponentType::UInt16:
+      return visit(std::uint16_t{});
+    case ComponentType::UInt32:
+      return visit(std::uint32_t{});
+    case ComponentType::Float32:
+      break;
   }
-  return values;
+  return visit(float{});
 }
 
 }  // namespace
 
+std::size_t component_bytes(ComponentType type) {
+  return with_type(type, [](auto value) { return sizeof value; });
+}
+
+double largest_component(ComponentType type) {
+  return with_type(type, [](auto value) {
+    using Limits = std::numeric_limits<decltype(value)>;
+    return Limits::is_integer ? static_cast<double>(Limits::max()) : 1.0;
+  });
+}
+
+std::vector<float> component_values(ComponentType type, bool normalized, std::span<const std::byte> data) {
+  const auto unit = static_cast<float>(normalized ? largest_component(type) : 1);
+  const bool may_fall_below = normalized && type != ComponentType::Float32;
+  return with_type(type, [&](auto value) {
+    std::vector<float> values(data.size() / sizeof value);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::memcpy(&value, &data[i * sizeof value], sizeof value);
+      values[i] = static_cast<float>(value) / unit;
+      if (may_fall_below) values[i] = std::max(values[i], -1.0F);
+    }
+    return values;
+  });
+}
+
+void store_component(ComponentType type, bool normalized, double value, std::byte* out) {
+  if (normalized) value *= largest_component(type);
+  with_type(type, [&](auto stored) {
+    using Stored = decltype(stored);
+    using Limits = std::numeric_limits<Stored>;
+    if (Limits::is_integer)
+      value = std::clamp(std::round(value), static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()));
+    stored = static_cast<Stored>(value);
+    std::memcpy(out, &stored, sizeof stored);
+  });
+}
+
 std::vector<float> attribute_values(const Attribute& attribute) {
-  switch (attribute.type) {
-    case ComponentType::Int8:
-      return values_as<std::int8_t>(attribute);
-    case ComponentType::UInt8:
-      return values_as<std::uint8_t>(attribute);
-    case ComponentType::Int16:
-      return values_as<std::int16_t>(attribute);
-    case ComponentType::UInt16:
-      return values_as<std::uint16_t>(attribute);
-    case ComponentType::UInt32:
-      return values_as<std::uint32_t>(attribute);
-    case ComponentType::Float32:
-      return values_as<float>(attribute);
-  }
-  return {};
+  return component_values(attribute.type, attribute.normalized, attribute.data);
 }
 
 Attribute pick_elements(const Attribute& attribute, std::span<const Index> elements) {

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
-#include <type_traits>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
@@ -305,20 +303,6 @@ Result<AccessorData> GltfDocument::accessor(std::size_t index) const {
 namespace {
 
 template <class T>
-void convert_to_floats(const AccessorData& data, std::vector<float>& out) {
-  constexpr bool kInteger = std::is_integral_v<T>;
-  // glTF: f = c / max for unsigned, f = max(c / max, −1) for signed types.
-  const float scale = kInteger && data.normalized ? static_cast<float>(std::numeric_limits<T>::max()) : 1.0f;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const T value = load<T>(data.bytes, i * sizeof(T));
-    if constexpr (!kInteger)
-      out[i] = value;
-    else
-      out[i] = data.normalized ? std::max(static_cast<float>(value) / scale, -1.0f) : static_cast<float>(value);
-  }
-}
-
-template <class T>
 void convert_to_indices(const AccessorData& data, std::vector<Index>& out) {
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = load<T>(data.bytes, i * sizeof(T));
 }
@@ -326,28 +310,7 @@ void convert_to_indices(const AccessorData& data, std::vector<Index>& out) {
 }  // namespace
 
 std::vector<float> to_floats(const AccessorData& data) {
-  std::vector<float> out(data.count * data.component_count);
-  switch (data.type) {
-    case ComponentType::Int8:
-      convert_to_floats<std::int8_t>(data, out);
-      break;
-    case ComponentType::UInt8:
-      convert_to_floats<std::uint8_t>(data, out);
-      break;
-    case ComponentType::Int16:
-      convert_to_floats<std::int16_t>(data, out);
-      break;
-    case ComponentType::UInt16:
-      convert_to_floats<std::uint16_t>(data, out);
-      break;
-    case ComponentType::UInt32:
-      convert_to_floats<std::uint32_t>(data, out);
-      break;
-    case ComponentType::Float32:
-      convert_to_floats<float>(data, out);
-      break;
-  }
-  return out;
+  return component_values(data.type, data.normalized, data.bytes);
 }
 
 Result<std::vector<Index>> to_indices(const AccessorData& data, std::string_view what) {

@@ -26,10 +26,6 @@ Result<std::vector<Transform>> read_inverse_binds(const GltfDocument& document, 
   return matrices;
 }
 
-std::vector<float> floats_of(const Attribute& a) {
-  return to_floats({a.type, a.component_count, a.normalized, a.data.size() / a.element_bytes(), a.data});
-}
-
 void add_scaled(Transform& sum, const Transform& other, double factor) {
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t column = 0; column < 4; ++column) sum.rows[row][column] += factor * other.rows[row][column];
@@ -63,7 +59,7 @@ Skinner::Skinner(std::span<const Attribute> attributes) {
     const std::string partner = "WEIGHTS_" + joints.name.substr(7);
     for (const Attribute& weights : attributes)
       if (weights.name == partner && weights.component_count == kJointsPerSet)
-        sets_.push_back({floats_of(joints), floats_of(weights)});
+        sets_.push_back({attribute_values(joints), attribute_values(weights)});
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,25 +36,11 @@ class Column {
     std::unique_ptr<Attribute>& copy = level_.mended[number_];
     if (!copy) copy = std::make_unique<Attribute>(layout_);
     level_.columns[number_] = copy.get();
-    store(copy->data.data() + (point * component_count() + component) * component_bytes(type()), value);
+    std::byte* const at = copy->data.data() + (point * component_count() + component) * component_bytes(type());
+    store_component(type(), is_normalized(), value, at);
   }
 
  private:
-  template <class T>
-  static void put(std::byte* to, double value) {
-    const T stored = static_cast<T>(value);
-    std::memcpy(to, &stored, sizeof stored);
-  }
-
-  void store(std::byte* to, double value) const {
-    const double stored = std::round(is_normalized() ? value * largest_component(type()) : value);
-    if (type() == ComponentType::Float32) put<float>(to, value);
-    if (type() == ComponentType::Int8) put<std::int8_t>(to, stored);
-    if (type() == ComponentType::UInt8) put<std::uint8_t>(to, stored);
-    if (type() == ComponentType::Int16) put<std::int16_t>(to, stored);
-    if (type() == ComponentType::UInt16) put<std::uint16_t>(to, stored);
-  }
-
   LevelGeometry& level_;
   std::size_t number_;
   const Attribute& layout_;  // as it was

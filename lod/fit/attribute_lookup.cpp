@@ -122,31 +122,6 @@ class WedgeFinder {
   Grouping wedges_;  // by place
 };
 
-template <class T>
-void store_as(double value, std::byte* out) {
-  const double low = static_cast<double>(std::numeric_limits<T>::lowest());
-  const double high = static_cast<double>(std::numeric_limits<T>::max());
-  const T stored = static_cast<T>(std::is_integral_v<T> ? std::clamp(std::round(value), low, high) : value);
-  std::memcpy(out, &stored, sizeof stored);
-}
-
-void store_component(ComponentType type, double value, std::byte* out) {
-  switch (type) {
-    case ComponentType::Int8:
-      return store_as<std::int8_t>(value, out);
-    case ComponentType::UInt8:
-      return store_as<std::uint8_t>(value, out);
-    case ComponentType::Int16:
-      return store_as<std::int16_t>(value, out);
-    case ComponentType::UInt16:
-      return store_as<std::uint16_t>(value, out);
-    case ComponentType::UInt32:
-      return store_as<std::uint32_t>(value, out);
-    case ComponentType::Float32:
-      return store_as<float>(value, out);
-  }
-}
-
 /// Blends one attribute of the original at a place into a wedge of the level.
 void blend(const Mesh& original, const std::vector<float>& values, const SurfacePlace& place, Attribute& attribute,
            Index wedge) {
@@ -162,10 +137,9 @@ void blend(const Mesh& original, const std::vector<float>& values, const Surface
     for (std::size_t i = 0; i < 3; ++i) sum[i] /= norm;
   }
   const std::size_t kept = attribute.name == "TANGENT" ? 3 : width;  // a tangent's sign is no number to blend
-  const double unit = attribute.normalized ? largest_component(attribute.type) : 1;
   const std::size_t size = component_bytes(attribute.type);
   for (std::size_t i = 0; i < kept; ++i)
-    store_component(attribute.type, sum[i] * unit, &attribute.data[(wedge * width + i) * size]);
+    store_component(attribute.type, attribute.normalized, sum[i], &attribute.data[(wedge * width + i) * size]);
 }
 
 void copy_wedge(const Mesh& from, Mesh& to, Index wedge) {

@@ -38,7 +38,15 @@ struct Attribute {
 /// Returns what an integer component of value 1 or −1 is stored as where it is normalized; 1 for floats.
 double largest_component(ComponentType type);
 
-/// Returns an attribute's components as floats, element after element; normalized integers in [0, 1] or [−1, 1].
+/// Returns stored components as floats; normalized integers in [0, 1] or [−1, 1]: of a signed type the two smallest
+/// stand for −1, as in glTF.
+std::vector<float> component_values(ComponentType type, bool normalized, std::span<const std::byte> data);
+
+/// Stores a number as a component, at `out`: the nearest that the type has, of a normalized integer the nearest to the
+/// number times the largest. Pre: it is a number.
+void store_component(ComponentType type, bool normalized, double value, std::byte* out);
+
+/// Returns an attribute's components as floats, element after element, as component_values does.
 std::vector<float> attribute_values(const Attribute& attribute);
 
 /// Returns an attribute with some of another's elements, in the order given.
