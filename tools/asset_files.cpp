@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 
 #include "messages.h"
@@ -29,13 +30,13 @@ bool lies_there(const AssetFile& file, const fs::path& path) {
 }  // namespace
 
 Result<void> add_asset(const EncodedAsset& asset, const fs::path& path, const InputFiles& input, StagedFiles& files) {
-  if (Result<void> done = files.add(path, asset.glb); !done) return done;
+  LODESTONE_CHECK(files.add(path, asset.glb));
   for (const AssetFile& file : asset.beside) {
     const fs::path place = path.parent_path() / file.path;
     if (files.has(place) || lies_there(file, place)) continue;
     if (consists_of(input, place))
       return fail(ErrorCode::NotWritten, "cannot write " + quoted(place) + ": the input needs it; name another output");
-    if (Result<void> done = files.add_with_folder(place, file.bytes); !done) return done;
+    LODESTONE_CHECK(files.add_with_folder(place, file.bytes));
   }
   return {};
 }

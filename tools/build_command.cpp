@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/core/parallel.h>
 
 #include "build_output.h"
@@ -17,6 +19,8 @@
 namespace lodestone::tool {
 namespace {
 
+using detail::text;
+
 constexpr int kMaxLevelCount = 32, kMaxThreadCount = 1024;
 
 /// Places a file beside the output, in a folder that is made where it does not exist.
@@ -25,7 +29,7 @@ Result<void> place_beside(std::optional<std::filesystem::path>& file, const std:
   if (!file) return {};
   const std::filesystem::path placed = place_in(*file, input, extension, several);
   if (placed != *file) {
-    if (Result<void> made = folders.make(placed.parent_path()); !made) return made;
+    LODESTONE_CHECK(folders.make(placed.parent_path()));
   } else if (several) {
     return fail(ErrorCode::InvalidArgument, quoted(*file) + " is one file for several inputs: name a folder");
   }
@@ -79,7 +83,7 @@ Result<Outcome> build_each(const std::vector<BuildCommand>& parts, ProgressBar& 
     ++failed;
   }
   if (!first_error) return outcome;
-  return fail(*first_error, std::to_string(failed) + " of " + std::to_string(parts.size()) + " inputs are not built");
+  return fail(*first_error, text(failed, " of ", parts.size(), " inputs are not built"));
 }
 
 }  // namespace
@@ -206,12 +210,11 @@ void BuildCommand::add_format_options(CLI::App& app) {
 
 /// Returns a command for each input, its files named; makes the folders that they go into.
 Result<std::vector<BuildCommand>> BuildCommand::split(MadeFolders& folders) const {
-  const Result<std::vector<FilePair>> pairs = files.pair_up("." + format);
-  if (!pairs) return tl::unexpected(pairs.error());
-  const bool several = pairs->size() > 1;
-  std::vector<BuildCommand> parts(pairs->size(), *this);
+  LODESTONE_TRY(const std::vector<FilePair> pairs, files.pair_up("." + format));
+  const bool several = pairs.size() > 1;
+  std::vector<BuildCommand> parts(pairs.size(), *this);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const FilePair& pair = (*pairs)[i];
+    const FilePair& pair = pairs[i];
     BuildCommand& part = parts[i];
     part.input = pair.input;
     part.output = pair.output;
@@ -228,13 +231,11 @@ Result<Outcome> BuildCommand::run() const {
   if (!input_format.empty() && !files.reads_standard_input())
     return fail(ErrorCode::InvalidArgument, "--input-format is for the standard input: give - as the input");
   MadeFolders folders;
-  const Result<std::vector<BuildCommand>> parts = split(folders);
-  if (!parts) return tl::unexpected(parts.error());
+  LODESTONE_TRY(const std::vector<BuildCommand> parts, split(folders));
   ProgressBar progress(!quiet);
   Result<Outcome> outcome = Outcome::Done;
-  with_threads(thread_count, [&] {
-    outcome = parts->size() == 1 ? build_one(parts->front(), progress) : build_each(*parts, progress);
-  });
+  with_threads(thread_count,
+               [&] { outcome = parts.size() == 1 ? build_one(parts.front(), progress) : build_each(parts, progress); });
   return outcome;
 }
 

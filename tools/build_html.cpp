@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/read_mesh.h>
 
 #include "html_report.h"
@@ -19,11 +20,9 @@ constexpr double kBoundRange = 1e6;  // from the largest bound that is shown to 
 Result<Mesh> world_level(const Scene& scene, std::span<const LeveledMesh> levels, std::size_t level) {
   AssetOptions options;
   options.draco = false;
-  const Result<EncodedAsset> asset = encode_scene_level(scene, levels, level, options);
-  if (!asset) return tl::unexpected(asset.error());
-  Result<MeshFile> flat = read_mesh_bytes(asset->glb, "glb");
-  if (!flat) return tl::unexpected(flat.error());
-  return std::move(flat->mesh);
+  LODESTONE_TRY(const EncodedAsset asset, encode_scene_level(scene, levels, level, options));
+  LODESTONE_TRY(MeshFile flat, read_mesh_bytes(asset.glb, "glb"));
+  return std::move(flat.mesh);
 }
 
 /// Returns what the streams promise: pairs of drawn faces and the world error that they are proved to lie within.
@@ -66,9 +65,8 @@ Result<std::string> build_page(const BuildReport& report, const Scene& scene, bo
                   {"report", std::move(numbers)},
                   {"bounds", with_bounds ? bounds_json(scene, report.build.simplified) : Json::array()}};
   for (std::size_t i = 0; i < report.build.levels.size(); ++i) {
-    Result<Mesh> level = world_level(scene, report.build.decoded, i);
-    if (!level) return tl::unexpected(level.error());
-    page.meshes.push_back(std::move(*level));
+    LODESTONE_TRY(Mesh level, world_level(scene, report.build.decoded, i));
+    page.meshes.push_back(std::move(level));
   }
   return html_page(page);
 }

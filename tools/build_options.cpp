@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include <lodestone/core/detail/try.h>
+
 #include "build_settings.h"
 #include "error_size.h"
 #include "file_words.h"
@@ -73,8 +75,7 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
 
 Result<SimplifyOptions> simplify_options(const BuildCommand& options) {
   SimplifyOptions simplify;
-  for (const std::string& text : options.weights)
-    if (Result<void> done = set_weight(text, simplify.weights); !done) return tl::unexpected(done.error());
+  for (const std::string& text : options.weights) LODESTONE_CHECK(set_weight(text, simplify.weights));
   simplify.lock_border = options.lock_border;
   simplify.vanish = options.vanish;
   if (options.crease_angle) simplify.crease_angle = *options.crease_angle * std::numbers::pi / 180;
@@ -100,16 +101,10 @@ bool writes_stream(const BuildCommand& options) { return !options.no_stream && !
 
 Result<BuildOptions> build_options(const BuildCommand& command) {
   BuildOptions options;
-  Result<std::vector<LevelTarget>> targets = requested_levels(command);
-  if (!targets) return tl::unexpected(targets.error());
-  options.targets = std::move(*targets);
-  Result<SimplifyOptions> simplify = simplify_options(command);
-  if (!simplify) return tl::unexpected(simplify.error());
-  options.simplify = std::move(*simplify);
+  LODESTONE_TRY(options.targets, requested_levels(command));
+  LODESTONE_TRY(options.simplify, simplify_options(command));
   if (command.settings) {
-    Result<Importance> importance = read_settings(*command.settings);
-    if (!importance) return tl::unexpected(importance.error());
-    options.importance = std::move(*importance);
+    LODESTONE_TRY(options.importance, read_settings(*command.settings));
   }
   options.importance.attribute = command.importance;
   options.scope = command.per_mesh ? TargetScope::Mesh : TargetScope::Scene;

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/screen_coverage.h>
 
 #include "asset_files.h"
@@ -16,6 +18,8 @@
 
 namespace lodestone::tool {
 namespace {
+
+using detail::text;
 
 /// Raised whenever a member changes its meaning or goes away.
 constexpr int kIndexSchemaVersion = 2;
@@ -119,7 +123,7 @@ std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std
   std::vector<std::filesystem::path> paths;
   for (std::size_t i = 0; i < level_count; ++i) {
     paths.push_back(options.output);
-    paths.back().replace_filename(level_stem(options) + std::to_string(i) + options.output.extension().string());
+    paths.back().replace_filename(text(level_stem(options), i, options.output.extension()));
   }
   paths.push_back(options.output);
   paths.back().replace_extension(".json");
@@ -127,11 +131,11 @@ std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std
 }
 
 Result<void> check_paths(const BuildCommand& options, std::size_t level_count) {
-  if (Result<void> fit = check_format(options); !fit) return fit;
+  LODESTONE_CHECK(check_format(options));
   for (const std::filesystem::path& path : output_paths(options, level_count))
-    if (Result<void> place = check_path(options, path); !place) return place;
+    LODESTONE_CHECK(check_path(options, path));
   if (options.html) {
-    if (Result<void> place = check_page_path(options, level_count); !place) return place;
+    LODESTONE_CHECK(check_page_path(options, level_count));
   }
   return options.report ? check_destination(*options.report) : Result<void>();
 }
@@ -170,16 +174,16 @@ Result<void> write_outputs(const BuildCommand& options, const BuildReport& repor
   StagedFiles files;
   const InputFiles input{options.input, report.input.files};
   for (std::size_t i = 0; i < assets.size(); ++i) {
-    if (Result<void> done = add_asset(assets[i], paths[i], input, files); !done) return done;
+    LODESTONE_CHECK(add_asset(assets[i], paths[i], input, files));
   }
   if (has_file_per_level(options)) {
-    if (Result<void> done = files.add(paths.back(), json_text(index_json(report))); !done) return done;
+    LODESTONE_CHECK(files.add(paths.back(), json_text(index_json(report))));
   }
   if (options.html) {
-    if (Result<void> done = files.add(*options.html, page); !done) return done;
+    LODESTONE_CHECK(files.add(*options.html, page));
   }
   if (options.report) {
-    if (Result<void> done = files.add(*options.report, json_text(report_json(report))); !done) return done;
+    LODESTONE_CHECK(files.add(*options.report, json_text(report_json(report))));
   }
   return files.commit();
 }

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/pipeline/build_asset.h>
 
@@ -22,6 +24,8 @@
 
 namespace lodestone::tool {
 namespace {
+
+using detail::text;
 
 /// About what share of the time each stage takes; together 1.
 constexpr double kReadingShare = 0.01;
@@ -99,15 +103,15 @@ void append_item(std::string& list, const std::string& item) { list += (list.emp
 
 /// Why the base mesh's vertices stay.
 std::string blocked_text(const BlockedCounts& blocked) {
-  std::string text;
-  if (blocked.locked > 0) append_item(text, std::to_string(blocked.locked) + " are locked");
-  if (blocked.flip > 0) append_item(text, std::to_string(blocked.flip) + " would turn a face over");
-  if (blocked.link > 0) append_item(text, std::to_string(blocked.link) + " would double an edge");
-  if (blocked.shape > 0) append_item(text, std::to_string(blocked.shape) + " would leave a sliver");
-  if (blocked.texture > 0) append_item(text, std::to_string(blocked.texture) + " would turn a texture over");
-  if (blocked.error > 0) append_item(text, std::to_string(blocked.error) + " beyond the error allowed");
-  if (blocked.ring > 0) append_item(text, std::to_string(blocked.ring) + " have too many neighbours");
-  return "vertices left: " + (text.empty() ? "none" : text);
+  std::string items;
+  if (blocked.locked > 0) append_item(items, text(blocked.locked, " are locked"));
+  if (blocked.flip > 0) append_item(items, text(blocked.flip, " would turn a face over"));
+  if (blocked.link > 0) append_item(items, text(blocked.link, " would double an edge"));
+  if (blocked.shape > 0) append_item(items, text(blocked.shape, " would leave a sliver"));
+  if (blocked.texture > 0) append_item(items, text(blocked.texture, " would turn a texture over"));
+  if (blocked.error > 0) append_item(items, text(blocked.error, " beyond the error allowed"));
+  if (blocked.ring > 0) append_item(items, text(blocked.ring, " have too many neighbours"));
+  return "vertices left: " + (items.empty() ? "none" : items);
 }
 
 /// What was asked for.
@@ -164,7 +168,7 @@ Result<Scene> read_input(const BuildCommand& options, BuildReport& report, Progr
   Result<Scene> scene = read_scene(options.input, options.input_format);
   bar.clear();
   if (!scene) return scene;
-  if (Result<void> fit = check_input(options.input, *scene); !fit) return tl::unexpected(fit.error());
+  LODESTONE_CHECK(check_input(options.input, *scene));
   report.input = input_report(options.input, *scene);
   std::vector<std::string> lines = remarks(*scene);
   for (std::string& line : options.targets.remarks(scene->box().diagonal(), scene->in_metres()))
@@ -179,9 +183,7 @@ Result<void> write(const BuildCommand& options, const Scene& scene, BuildReport&
   list_files(options, report);
   std::string page;
   if (options.html) {
-    Result<std::string> made = build_page(report, scene, writes_stream(options));
-    if (!made) return tl::unexpected(made.error());
-    page = std::move(*made);
+    LODESTONE_TRY(page, build_page(report, scene, writes_stream(options)));
   }
   return write_outputs(options, report, page);
 }
@@ -191,18 +193,14 @@ Result<void> write(const BuildCommand& options, const Scene& scene, BuildReport&
 Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar) {
   FinishedBuild finished;
   BuildReport& report = finished.report;
-  Result<BuildOptions> options = build_options(command);
-  if (!options) return tl::unexpected(options.error());
-  const std::size_t level_count = options->targets.size() + 1;
-  if (Result<void> paths = check_paths(command, level_count); !paths) return tl::unexpected(paths.error());
-  report.settings = settings_json(command, options->simplify.weights, level_count);
+  LODESTONE_TRY(BuildOptions options, build_options(command));
+  const std::size_t level_count = options.targets.size() + 1;
+  LODESTONE_CHECK(check_paths(command, level_count));
+  report.settings = settings_json(command, options.simplify.weights, level_count);
 
-  const Result<Scene> scene = read_input(command, report, bar);
-  if (!scene) return tl::unexpected(scene.error());
-  if (Result<void> known = check_names(options->importance, *scene); !known)
-    return fail(known.error().code, "--settings: " + known.error().message);
+  LODESTONE_TRY(const Scene scene, read_input(command, report, bar));
   BarObserver observer(bar);
-  Result<BuildResult> built = build_asset(*scene, *options, observer);
+  Result<BuildResult> built = build_asset(scene, options, observer);
   bar.clear();
   if (!built) return tl::unexpected(built.error());
   report.build = std::move(*built);
@@ -213,7 +211,7 @@ Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar) {
     if (command.strict) finished.outcome = Outcome::TargetNotMet;
   }
   if (finished.outcome != Outcome::Done) return finished;
-  if (Result<void> done = write(command, *scene, report); !done) return tl::unexpected(done.error());
+  LODESTONE_CHECK(write(command, scene, report));
   return finished;
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 
 #include "json_text.h"
@@ -37,9 +38,7 @@ Result<std::map<std::string, PartImportance>> parse_parts(const std::filesystem:
   std::map<std::string, PartImportance> parts;
   if (!json.is_object()) return malformed(path, member + " is not an object");
   for (const auto& [name, value] : json.items()) {
-    Result<PartImportance> part = parse_part(path, member + " " + quoted(std::string_view(name)), value);
-    if (!part) return tl::unexpected(part.error());
-    parts[name] = *part;
+    LODESTONE_TRY(parts[name], parse_part(path, member + " " + quoted(std::string_view(name)), value));
   }
   return parts;
 }
@@ -47,18 +46,16 @@ Result<std::map<std::string, PartImportance>> parse_parts(const std::filesystem:
 }  // namespace
 
 Result<Importance> read_settings(const std::filesystem::path& path) {
-  const Result<std::vector<std::byte>> bytes = read_file(path);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const auto* text = reinterpret_cast<const char*>(bytes->data());
-  const Json json = Json::parse(text, text + bytes->size(), nullptr, false, true);
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  const auto* text = reinterpret_cast<const char*>(bytes.data());
+  const Json json = Json::parse(text, text + bytes.size(), nullptr, false, true);
   if (json.is_discarded() || !json.is_object()) return malformed(path, "is not a JSON object");
   Importance settings;
   for (const auto& [name, value] : json.items()) {
     if (name != "materials" && name != "nodes")
       return malformed(path, "no setting is called " + quoted(std::string_view(name)));
-    auto parts = parse_parts(path, name, value);
-    if (!parts) return tl::unexpected(parts.error());
-    (name == "nodes" ? settings.nodes : settings.materials) = std::move(*parts);
+    LODESTONE_TRY(auto parts, parse_parts(path, name, value));
+    (name == "nodes" ? settings.nodes : settings.materials) = std::move(parts);
   }
   return settings;
 }

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/read_mesh.h>
 #include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/deviation.h>
@@ -36,12 +37,11 @@ struct Surface {
 };
 
 Result<Surface> read_surface(const std::filesystem::path& path) {
-  Result<MeshFile> file = read_mesh_file(path);
-  if (!file) return tl::unexpected(file.error());
-  if (file->mesh.face_count() == 0) {
+  LODESTONE_TRY(MeshFile file, read_mesh_file(path));
+  if (file.mesh.face_count() == 0) {
     return fail(ErrorCode::Malformed, quoted(path) + ": no triangles to compare");
   }
-  return Surface{path.string(), std::move(file->mesh), loaded_bytes(path).value_or(0)};
+  return Surface{path.string(), std::move(file.mesh), loaded_bytes(path).value_or(0)};
 }
 
 Json surface_json(const Surface& surface) {
@@ -100,9 +100,8 @@ Result<Heatmap> make_heatmap(const std::filesystem::path& path, const Surface& a
   const double largest = *std::max_element(errors.begin(), errors.end());
   const double nearly_all = measure_spread(a.mesh, surface, largest).nearly_all;
   const double upper = nearly_all > 0 ? nearly_all : largest;
-  Result<std::vector<std::byte>> bytes = encode_heatmap(path, a.mesh, errors, upper);
-  if (!bytes) return tl::unexpected(bytes.error());
-  return Heatmap{std::move(*bytes), upper};
+  LODESTONE_TRY(std::vector<std::byte> bytes, encode_heatmap(path, a.mesh, errors, upper));
+  return Heatmap{std::move(bytes), upper};
 }
 
 Result<void> check_output(const char* option, const std::filesystem::path& path, const CompareCommand& options) {
@@ -118,8 +117,8 @@ Result<void> check_outputs(const CompareCommand& options) {
   if (is_standard_stream(options.first) && is_standard_stream(options.second))
     return fail(ErrorCode::InvalidArgument, "the standard input can be A or B, not both");
   if (options.heatmap) {
-    if (Result<void> done = check_heatmap_path(*options.heatmap); !done) return done;
-    if (Result<void> done = check_output("--heatmap", *options.heatmap, options); !done) return done;
+    LODESTONE_CHECK(check_heatmap_path(*options.heatmap));
+    LODESTONE_CHECK(check_output("--heatmap", *options.heatmap, options));
   }
   if (!options.html) return {};
   if (options.heatmap && options.heatmap->lexically_normal() == options.html->lexically_normal())
@@ -161,42 +160,38 @@ void CompareCommand::add_to(CLI::App& app) {
 }
 
 Result<Outcome> CompareCommand::run() const {
-  if (Result<void> paths = check_outputs(*this); !paths) return tl::unexpected(paths.error());
+  LODESTONE_CHECK(check_outputs(*this));
   ProgressBar progress(true);
   progress.update("reading", 0);
-  const Result<Surface> a = read_surface(first);
-  if (!a) return tl::unexpected(a.error());
-  const Result<Surface> b = read_surface(second);
-  if (!b) return tl::unexpected(b.error());
+  LODESTONE_TRY(const Surface a, read_surface(first));
+  LODESTONE_TRY(const Surface b, read_surface(second));
   progress.update("measuring", 0.1);
   DeviationOptions how;
   how.sample_count = samples;
-  const Deviation deviation = measure_deviation(a->mesh, b->mesh, how);
-  const double diagonal = bounding_box(a->mesh).diagonal();
-  const Json comparison = comparison_json(*a, *b, deviation, diagonal);
+  const Deviation deviation = measure_deviation(a.mesh, b.mesh, how);
+  const double diagonal = bounding_box(a.mesh).diagonal();
+  const Json comparison = comparison_json(a, b, deviation, diagonal);
 
   StagedFiles files;
   if (html) {
     progress.update("drawing", 0.6);
-    const Result<std::string> page = comparison_page(*a, *b, comparison, diagonal);
-    if (!page) return tl::unexpected(page.error());
-    if (Result<void> done = files.add(*html, *page); !done) return tl::unexpected(done.error());
+    LODESTONE_TRY(const std::string page, comparison_page(a, b, comparison, diagonal));
+    LODESTONE_CHECK(files.add(*html, page));
   }
   double upper = 0;
   if (heatmap) {
-    const Result<Heatmap> colours = make_heatmap(*heatmap, *a, *b);
-    if (!colours) return tl::unexpected(colours.error());
-    upper = colours->upper;
-    if (Result<void> done = files.add(*heatmap, colours->bytes); !done) return tl::unexpected(done.error());
+    LODESTONE_TRY(const Heatmap colours, make_heatmap(*heatmap, a, b));
+    upper = colours.upper;
+    LODESTONE_CHECK(files.add(*heatmap, colours.bytes));
   }
   progress.clear();
-  if (Result<void> done = files.commit(); !done) return tl::unexpected(done.error());
+  LODESTONE_CHECK(files.commit());
 
   if (json) {
     std::fputs(json_text(comparison).c_str(), stdout);
     return Outcome::Done;
   }
-  print_comparison(*a, *b, deviation, diagonal);
+  print_comparison(a, b, deviation, diagonal);
   if (heatmap)
     std::printf("%s: from pale, no error, to dark, %s (%s of the diagonal) and more\n", heatmap->string().c_str(),
                 number_text(upper).c_str(), percent_text(upper, diagonal).c_str());

@@ -9,11 +9,16 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
+
 #include "messages.h"
 #include "standard_streams.h"
 
 namespace lodestone::tool {
 namespace {
+
+using detail::text;
 
 namespace fs = std::filesystem;
 
@@ -42,8 +47,7 @@ Result<void> check_several(const std::vector<fs::path>& inputs, const fs::path& 
   std::error_code ignored;
   if (words.output && !words.positional.empty() && !fs::exists(words.positional.back(), ignored))
     hint = "; " + quoted(words.positional.back()) + " does not exist: is it a second output?";
-  return refuse(std::to_string(inputs.size()) + " inputs need a folder as output, " + quoted(output) +
-                " is a file's name" + hint);
+  return refuse(text(inputs.size(), " inputs need a folder as output, ", quoted(output), " is a file's name", hint));
 }
 
 Result<void> check_pairs(const std::vector<FilePair>& pairs) {
@@ -83,18 +87,17 @@ Result<std::vector<fs::path>> FileWords::take_output(fs::path& target) const {
 
 Result<std::vector<FilePair>> FileWords::pair_up(const std::string& extension) const {
   fs::path target;
-  const Result<std::vector<fs::path>> files = take_output(target);
-  if (!files) return tl::unexpected(files.error());
-  const bool several = files->size() > 1;
+  LODESTONE_TRY(const std::vector<fs::path> files, take_output(target));
+  const bool several = files.size() > 1;
   const bool in_folder = is_folder(target, several);
   if (several) {
-    if (Result<void> fit = check_several(*files, target, *this); !fit) return tl::unexpected(fit.error());
-  } else if (in_folder && is_standard_stream(files->front())) {
+    LODESTONE_CHECK(check_several(files, target, *this));
+  } else if (in_folder && is_standard_stream(files.front())) {
     return refuse("the standard input has no name to be written under in " + quoted(target) + ": name the file");
   }
   std::vector<FilePair> pairs;
-  for (const fs::path& input : *files) pairs.push_back({input, place_in(target, input, extension, several), in_folder});
-  if (Result<void> fit = check_pairs(pairs); !fit) return tl::unexpected(fit.error());
+  for (const fs::path& input : files) pairs.push_back({input, place_in(target, input, extension, several), in_folder});
+  LODESTONE_CHECK(check_pairs(pairs));
   return pairs;
 }
 

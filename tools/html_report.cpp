@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
@@ -19,6 +21,8 @@
 
 namespace lodestone::tool {
 namespace {
+
+using detail::text;
 
 constexpr std::size_t kMostFacesOfMesh = 200'000;
 constexpr std::size_t kMostFacesOfPage = 1'000'000;
@@ -39,9 +43,8 @@ Result<Mesh> picture_of(const Mesh& mesh, std::size_t most_faces) {
   SimplifyOptions options;
   options.measure_step = 0;
   options.stop.min_faces = most_faces - 2;
-  const Result<SimplifyResult> simplified = simplify(bare(mesh), options);
-  if (!simplified) return tl::unexpected(simplified.error());
-  return extract_level(simplified->mesh, position_for_faces(simplified->mesh, most_faces));
+  LODESTONE_TRY(const SimplifyResult simplified, simplify(bare(mesh), options));
+  return extract_level(simplified.mesh, position_for_faces(simplified.mesh, most_faces));
 }
 
 Box box_around(const std::vector<Mesh>& meshes) {
@@ -82,7 +85,7 @@ std::string script_json(const Json& json) {
 class PageData {
  public:
   std::string add_blob(std::span<const std::byte> bytes) {
-    std::string id = "blob-" + std::to_string(blob_count_++);
+    std::string id = text("blob-", blob_count_++);
     blobs_ += "<script type=\"text/plain\" id=\"" + id + "\">" + base64(bytes) + "</script>\n";
     return id;
   }
@@ -122,13 +125,12 @@ Result<Json> pictures_json(const std::vector<Mesh>& meshes, const Box& box, Page
   std::vector<Index> order;
   Json json = Json::array();
   for (const Mesh& mesh : meshes) {
-    Result<Mesh> picture = picture_of(mesh, most_faces);
-    if (!picture) return tl::unexpected(picture.error());
-    PageGeometry geometry = encode_geometry(*picture, box);
-    Json entry = {{"faces", mesh.face_count()}, {"shown_faces", picture->face_count()}};
+    LODESTONE_TRY(Mesh picture, picture_of(mesh, most_faces));
+    PageGeometry geometry = encode_geometry(picture, box);
+    Json entry = {{"faces", mesh.face_count()}, {"shown_faces", picture.face_count()}};
     entry["data"] = data.add_blob(geometry.bytes);
     entry["errors"] = original ? errors_json(meshes.front(), *original, order, mesh, data) : Json(nullptr);
-    if (!original) original = std::move(*picture), order = std::move(geometry.vertices);
+    if (!original) original = std::move(picture), order = std::move(geometry.vertices);
     json.push_back(std::move(entry));
   }
   return json;
@@ -153,13 +155,12 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 Result<std::string> html_page(const HtmlReport& report) {
   PageData data;
   const Box box = box_around(report.meshes);
-  Result<Json> pictures = pictures_json(report.meshes, box, data);
-  if (!pictures) return tl::unexpected(pictures.error());
+  LODESTONE_TRY(Json pictures, pictures_json(report.meshes, box, data));
   const Json page = {{"title", report.title},
                      {"diagonal", report.diagonal},
                      {"box", box_json(box)},
                      {"colours", colour_stops(kColourStops)},
-                     {"pictures", std::move(*pictures)},
+                     {"pictures", std::move(pictures)},
                      {"numbers", report.numbers}};
   return filled(html::kPage, {{"title", escaped(report.title)},
                               {"version", LODESTONE_VERSION},

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 
 #include "error_size.h"
@@ -39,51 +40,46 @@ Result<std::vector<std::byte>> read_bytes(const std::filesystem::path& path) {
 
 Result<Scene> read_scene(const std::filesystem::path& path, const std::string& format) {
   if (!is_standard_stream(path)) return Scene::read(path);
-  const Result<std::vector<std::byte>> bytes = read_standard_input();
-  if (!bytes) return tl::unexpected(bytes.error());
-  return Scene::read_bytes(*bytes, format).map_error(of_standard_input);
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_standard_input());
+  return Scene::read_bytes(bytes, format).map_error(of_standard_input);
 }
 
 Result<MeshFile> read_mesh_file(const std::filesystem::path& path) {
   if (!is_standard_stream(path)) return read_mesh(path);
-  const Result<std::vector<std::byte>> bytes = read_standard_input();
-  if (!bytes) return tl::unexpected(bytes.error());
-  return read_mesh_bytes(*bytes, "").map_error(of_standard_input);
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_standard_input());
+  return read_mesh_bytes(bytes, "").map_error(of_standard_input);
 }
 
 Result<AssetOrScene> read_asset_or_scene(const std::filesystem::path& path) {
   const bool is_stream = is_standard_stream(path);
-  const Result<std::vector<std::byte>> bytes = read_bytes(path);
-  if (!bytes) return tl::unexpected(bytes.error());
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_bytes(path));
   AssetOrScene file;
-  if (may_be_gltf(*bytes)) {
-    Result<Asset> asset = is_stream ? read_asset_bytes(*bytes).map_error(of_standard_input) : read_asset(path);
+  if (may_be_gltf(bytes)) {
+    Result<Asset> asset = is_stream ? read_asset_bytes(bytes).map_error(of_standard_input) : read_asset(path);
     // A .glb from elsewhere may hold what only the general reader understands.
     if (!asset && asset.error().code != ErrorCode::Unsupported) return tl::unexpected(asset.error());
     if (asset && (asset->levels.size() >= 2 || !asset->streams.empty())) file.asset = std::move(*asset);
   }
   if (file.asset) return file;
-  Result<Scene> scene = is_stream ? Scene::read_bytes(*bytes, "") : Scene::read(path);
+  Result<Scene> scene = is_stream ? Scene::read_bytes(bytes, "") : Scene::read(path);
   if (!scene && scene.error().code == ErrorCode::Unsupported) {
-    Result<MeshFile> mesh = is_stream ? read_mesh_bytes(*bytes, "") : read_mesh(path);
-    if (!mesh) return tl::unexpected(mesh.error());
-    scene = Scene::from_mesh(std::move(*mesh), path.stem().string());
+    LODESTONE_TRY(MeshFile mesh, is_stream ? read_mesh_bytes(bytes, "") : read_mesh(path));
+    scene = Scene::from_mesh(std::move(mesh), path.stem().string());
   }
   if (!scene) return tl::unexpected(scene.error());
   file.scene = std::move(*scene);
-  file.bytes = is_stream ? bytes->size() : loaded_bytes(path).value_or(bytes->size());
+  file.bytes = is_stream ? bytes.size() : loaded_bytes(path).value_or(bytes.size());
   return file;
 }
 
 Result<Scene> read_levels(const std::filesystem::path& path, std::size_t level) {
-  const Result<std::vector<std::byte>> bytes = read_bytes(path);
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (!may_be_gltf(*bytes))
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_bytes(path));
+  if (!may_be_gltf(bytes))
     return tl::unexpected(not_streamed(path, ErrorCode::Unsupported, "it is neither .glb nor .gltf"));
   Result<Scene> scene = is_standard_stream(path)
-                            ? Scene::read_multi_lod_bytes(*bytes, level).map_error(of_standard_input)
+                            ? Scene::read_multi_lod_bytes(bytes, level).map_error(of_standard_input)
                             : Scene::read_multi_lod(path, level);
-  const bool is_text = as_text(*bytes).front() != 'g';
+  const bool is_text = as_text(bytes).front() != 'g';
   if (scene ||
       (scene.error().code != ErrorCode::Unsupported && !(is_text && scene.error().code == ErrorCode::Malformed)))
     return scene;

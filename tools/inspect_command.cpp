@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <lodestone/core/connectivity.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/asset.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
@@ -152,9 +153,8 @@ void print_asset(const std::string& path, const Asset& asset, std::span<const Li
 Result<Outcome> inspect_asset(const std::string& path, const Asset& asset, bool json) {
   std::vector<ListedStream> streams;
   for (const Asset::Stream& stream : asset.streams) {
-    Result<StreamDirectory> directory = read_stream_directory(stream.bytes);
-    if (!directory) return tl::unexpected(directory.error());
-    streams.push_back({stream.mesh, std::move(*directory)});
+    LODESTONE_TRY(StreamDirectory directory, read_stream_directory(stream.bytes));
+    streams.push_back({stream.mesh, std::move(directory)});
   }
   if (json) {
     std::fputs(json_text(asset_json(path, asset, streams)).c_str(), stdout);
@@ -178,10 +178,9 @@ struct Inventory {
 };
 
 Result<void> count_kinds(const SceneMesh& mesh, KindCounts& counts) {
-  const Result<Connectivity> connectivity = Connectivity::build(mesh.mesh);
-  if (!connectivity) return tl::unexpected(connectivity.error());
+  LODESTONE_TRY(const Connectivity connectivity, Connectivity::build(mesh.mesh));
   for (Index vertex = 0; vertex < mesh.mesh.vertex_count(); ++vertex) {
-    const VertexKind kind = connectivity->has_vertex(vertex) ? connectivity->kind(vertex) : VertexKind::Isolated;
+    const VertexKind kind = connectivity.has_vertex(vertex) ? connectivity.kind(vertex) : VertexKind::Isolated;
     for (std::size_t i = 0; i < kKindNames.size(); ++i)
       if (kKindNames[i].kind == kind) counts[i] += mesh.instance_count;
   }
@@ -206,8 +205,7 @@ Result<Inventory> take_inventory(const Scene& scene, std::uint64_t bytes) {
   inventory.box = scene.box();
   inventory.notes = scene.notes();
   for (const AssemblyReport& dropped : scene.dropped()) inventory.assembly = inventory.assembly + dropped;
-  for (const SceneMesh& mesh : scene.meshes())
-    if (Result<void> done = add_mesh(mesh, inventory); !done) return tl::unexpected(done.error());
+  for (const SceneMesh& mesh : scene.meshes()) LODESTONE_CHECK(add_mesh(mesh, inventory));
   return inventory;
 }
 
@@ -258,12 +256,11 @@ void print_inventory(const std::string& path, const Inventory& inventory) {
 }
 
 Result<Outcome> inspect_scene(const std::string& path, const Scene& scene, std::uint64_t bytes, bool json) {
-  const Result<Inventory> inventory = take_inventory(scene, bytes);
-  if (!inventory) return tl::unexpected(inventory.error());
+  LODESTONE_TRY(const Inventory inventory, take_inventory(scene, bytes));
   if (json) {
-    std::fputs(json_text(inventory_json(path, *inventory)).c_str(), stdout);
+    std::fputs(json_text(inventory_json(path, inventory)).c_str(), stdout);
   } else {
-    print_inventory(path, *inventory);
+    print_inventory(path, inventory);
   }
   return Outcome::Done;
 }
@@ -279,10 +276,9 @@ void InspectCommand::add_to(CLI::App& app) {
 }
 
 Result<Outcome> InspectCommand::run() const {
-  const Result<AssetOrScene> file = read_asset_or_scene(input);
-  if (!file) return tl::unexpected(file.error());
-  if (file->asset) return inspect_asset(input.string(), *file->asset, json);
-  return inspect_scene(input.string(), *file->scene, file->bytes, json);
+  LODESTONE_TRY(const AssetOrScene file, read_asset_or_scene(input));
+  if (file.asset) return inspect_asset(input.string(), *file.asset, json);
+  return inspect_scene(input.string(), *file.scene, file.bytes, json);
 }
 
 }  // namespace lodestone::tool

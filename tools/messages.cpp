@@ -2,8 +2,12 @@
 
 #include <cstdio>
 
+#include <lodestone/core/detail/text.h>
+
 namespace lodestone::tool {
 namespace {
+
+using detail::text;
 
 void print_line(const char* kind, std::string_view message) {
   std::fprintf(stderr, "lodestone: %s: %.*s\n", kind, static_cast<int>(message.size()), message.data());
@@ -16,8 +20,7 @@ void print_error(std::string_view message) { print_line("error", message); }
 void print_warning(std::string_view message) { print_line("warning", message); }
 
 std::string describe(const Error& error) {
-  const std::string where = error.byte_offset ? " (at byte " + std::to_string(*error.byte_offset) + ")" : "";
-  return error.message + where;
+  return error.byte_offset ? text(error.message, " (at byte ", *error.byte_offset, ')') : error.message;
 }
 
 std::string quoted(std::string_view text) { return std::string(1, '\'').append(text).append(1, '\''); }
@@ -42,7 +45,7 @@ std::vector<std::string> sentences(const AssemblyReport& report) {
   std::vector<std::string> lines;
   for (const auto& change : changes) {
     if (change.count == 0) continue;
-    lines.push_back(std::to_string(change.count) + " " + (change.count == 1 ? change.one : change.many) + change.what);
+    lines.push_back(text(change.count, ' ', change.count == 1 ? change.one : change.many, change.what));
   }
   return lines;
 }

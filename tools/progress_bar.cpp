@@ -7,10 +7,14 @@
 
 #if __has_include(<unistd.h>)
 #include <unistd.h>
+
+#include <lodestone/core/detail/text.h>
 #endif
 
 namespace lodestone::tool {
 namespace {
+
+using detail::text;
 
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 30;
@@ -28,9 +32,9 @@ bool stderr_is_terminal() {
 /// A rough number is all an estimate is worth.
 std::string duration_text(double seconds) {
   constexpr double kMinute = 60, kHour = 3600;
-  if (seconds < 2 * kMinute) return std::to_string(std::lround(seconds)) + " s";
-  if (seconds < 2 * kHour) return std::to_string(std::lround(seconds / kMinute)) + " min";
-  return std::to_string(std::lround(seconds / kHour)) + " h";
+  if (seconds < 2 * kMinute) return text(std::lround(seconds), " s");
+  if (seconds < 2 * kHour) return text(std::lround(seconds / kMinute), " min");
+  return text(std::lround(seconds / kHour), " h");
 }
 
 }  // namespace

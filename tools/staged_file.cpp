@@ -5,6 +5,8 @@
 #include <string>
 #include <system_error>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 
 #include "messages.h"
@@ -13,12 +15,12 @@
 namespace lodestone::tool {
 namespace {
 
+using detail::text;
+
 namespace fs = std::filesystem;
 
 /// A name that no other run uses at the same time.
-fs::path staged_name(const fs::path& target) {
-  return stand_in_name(target, ".staged-" + std::to_string(std::random_device{}()));
-}
+fs::path staged_name(const fs::path& target) { return stand_in_name(target, text(".staged-", std::random_device{}())); }
 
 /// Messages name the file the user asked for, not its stand-in.
 Error naming(Error error, const fs::path& stand_in, const fs::path& destination) {
@@ -67,10 +69,8 @@ StagedFile::~StagedFile() {
 Result<void> StagedFile::write(std::span<const std::byte> bytes) {
   if (is_standard_stream(destination_)) return write_standard_output(bytes);
   if (takes_bytes_directly(destination_)) return write_file(destination_, bytes);
-  if (Result<void> place = check_is_no_folder(destination_); !place) return place;
-  Result<fs::path> target = follow_links(destination_);
-  if (!target) return tl::unexpected(target.error());
-  target_ = std::move(*target);
+  LODESTONE_CHECK(check_is_no_folder(destination_));
+  LODESTONE_TRY(target_, follow_links(destination_));
   staged_ = staged_name(target_);
   return write_file(staged_, bytes).map_error([&](Error error) {
     return naming(std::move(error), staged_, destination_);
@@ -126,7 +126,7 @@ Result<void> MadeFolders::make(const fs::path& folder) {
 }
 
 Result<void> StagedFiles::add_with_folder(const fs::path& path, std::span<const std::byte> bytes) {
-  if (Result<void> made = folders_.make(path.parent_path()); !made) return made;
+  LODESTONE_CHECK(folders_.make(path.parent_path()));
   return add(path, bytes);
 }
 
@@ -144,8 +144,7 @@ bool StagedFiles::has(const fs::path& path) const {
 }
 
 Result<void> StagedFiles::commit() {
-  for (const auto& file : files_)
-    if (Result<void> kept = file->keep_old(); !kept) return kept;
+  for (const auto& file : files_) LODESTONE_CHECK(file->keep_old());
   for (const auto& file : files_) {
     Result<void> done = file->commit();
     if (done) continue;
@@ -157,16 +156,15 @@ Result<void> StagedFiles::commit() {
 
 Result<void> check_destination(const fs::path& path) {
   if (takes_bytes_directly(path)) return {};
-  if (Result<void> place = check_is_no_folder(path); !place) return place;
-  const Result<fs::path> target = follow_links(path);
-  if (!target) return tl::unexpected(target.error());
+  LODESTONE_CHECK(check_is_no_folder(path));
+  LODESTONE_TRY(const fs::path target, follow_links(path));
   std::error_code error;
-  const fs::path folder = target->has_parent_path() ? target->parent_path() : fs::path(".");
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
     return fail(ErrorCode::NotWritten,
                 "cannot write " + quoted(path) + ": the folder " + quoted(folder) + " does not exist");
   }
-  return try_to_write_beside(*target, path);
+  return try_to_write_beside(target, path);
 }
 
 }  // namespace lodestone::tool

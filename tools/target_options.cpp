@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/detail/try.h>
+
 #include "error_size.h"
 #include "messages.h"
 #include "text_table.h"
@@ -79,9 +81,8 @@ std::vector<std::string> split_lists(const std::vector<std::string>& lists) {
 Result<std::vector<LevelTarget>> parse_targets(const std::vector<std::string>& lists, ParseTarget parse) {
   std::vector<LevelTarget> targets;
   for (const std::string& value : split_lists(lists)) {
-    Result<LevelTarget> target = parse(value);
-    if (!target) return tl::unexpected(std::move(target.error()));
-    targets.push_back(*target);
+    LODESTONE_TRY(LevelTarget target, parse(value));
+    targets.push_back(target);
   }
   return targets;
 }

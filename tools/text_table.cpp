@@ -32,12 +32,6 @@ void TextTable::print() const {
   for (const auto& row : rows_) std::puts(line_of(row, widths).c_str());
 }
 
-std::string number_text(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
-
 std::string percent_text(double length, double diagonal) {
   if (length == 0) return "0%";
   return number_text(100 * length / diagonal, 3) + "%";

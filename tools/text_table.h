@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <lodestone/core/detail/text.h>
+
 namespace lodestone::tool {
 
 /// Rows of text, printed with their columns aligned: the first to the left, the others to the right.
@@ -18,8 +20,7 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// Returns a number with at most `digits` significant digits, and without an exponent where it can be had.
-std::string number_text(double value, int digits = 5);
+using detail::number_text;
 
 /// Returns a length as a share of the diagonal, e.g. `0.083%`.
 std::string percent_text(double length, double diagonal);

@@ -9,6 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/detail/try.h>
+
 #include "error_size.h"
 #include "foreign_words.h"
 #include "messages.h"
@@ -110,7 +112,7 @@ class CommandLine {
         out_.insert(out_.end(), words_.begin() + next_ - 1, words_.end());
         break;
       }
-      if (Result<void> done = add(word); !done) return tl::unexpected(done.error());
+      LODESTONE_CHECK(add(word));
     }
     if (!unknown_.empty()) return refuse(unknown_, command_.get_name());
     return std::move(out_);

@@ -12,6 +12,8 @@
 #include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/hash_index.h>
 #include <lodestone/core/detail/position_index.h>
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 
 #include "fans.h"
 #include "winding.h"
@@ -29,32 +31,31 @@ using detail::mix_bits;
 using detail::pick_entries;
 using detail::PositionIndex;
 using detail::sorted_edges;
+using detail::text;
 
 bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 Result<void> check_lengths(const TriangleSoup& soup) {
   if (soup.positions.size() >= kNoIndex || soup.indices.size() >= kNoIndex)
-    return fail(ErrorCode::InvalidArgument, "mesh of " + std::to_string(soup.positions.size()) + " points and " +
-                                                std::to_string(soup.indices.size()) + " indices exceeds 32 bits");
+    return fail(ErrorCode::InvalidArgument, text("mesh of ", soup.positions.size(), " points and ", soup.indices.size(),
+                                                 " indices exceeds 32 bits"));
   if (soup.indices.size() % 3 != 0)
-    return fail(ErrorCode::InvalidArgument,
-                "index count " + std::to_string(soup.indices.size()) + " is not a multiple of 3");
+    return fail(ErrorCode::InvalidArgument, text("index count ", soup.indices.size(), " is not a multiple of 3"));
   if (!soup.face_material.empty() && soup.face_material.size() != soup.indices.size() / 3)
-    return fail(ErrorCode::InvalidArgument, "material count " + std::to_string(soup.face_material.size()) +
-                                                " differs from face count " + std::to_string(soup.indices.size() / 3));
+    return fail(ErrorCode::InvalidArgument, text("material count ", soup.face_material.size(),
+                                                 " differs from face count ", soup.indices.size() / 3));
   if (!soup.point_sheet.empty() && soup.point_sheet.size() != soup.positions.size())
-    return fail(ErrorCode::InvalidArgument, "sheet count " + std::to_string(soup.point_sheet.size()) +
-                                                " differs from point count " + std::to_string(soup.positions.size()));
+    return fail(ErrorCode::InvalidArgument,
+                text("sheet count ", soup.point_sheet.size(), " differs from point count ", soup.positions.size()));
   for (const Attribute& attribute : soup.attributes)
     if (attribute.component_count == 0 || attribute.data.size() != attribute.element_bytes() * soup.positions.size())
-      return fail(ErrorCode::InvalidArgument, "attribute " + attribute.name + " has " +
-                                                  std::to_string(attribute.data.size()) + " bytes for " +
-                                                  std::to_string(soup.positions.size()) + " points of " +
-                                                  std::to_string(attribute.element_bytes()));
+      return fail(ErrorCode::InvalidArgument,
+                  text("attribute ", attribute.name, " has ", attribute.data.size(), " bytes for ",
+                       soup.positions.size(), " points of ", attribute.element_bytes()));
   for (std::size_t i = 0; i < soup.indices.size(); ++i)
     if (soup.indices[i] >= soup.positions.size())
-      return fail(ErrorCode::InvalidArgument, "index " + std::to_string(i) + " is " + std::to_string(soup.indices[i]) +
-                                                  ", beyond the " + std::to_string(soup.positions.size()) + " points");
+      return fail(ErrorCode::InvalidArgument,
+                  text("index ", i, " is ", soup.indices[i], ", beyond the ", soup.positions.size(), " points"));
   return {};
 }
 
@@ -203,7 +204,7 @@ AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b) {
 }
 
 Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& options) {
-  if (auto checked = check_lengths(soup); !checked) return tl::unexpected(checked.error());
+  LODESTONE_CHECK(check_lengths(soup));
   AssembledMesh result;
   AssemblyReport& report = result.report;
   CleanFaces faces = drop_nonfinite(soup, report);

@@ -11,6 +11,8 @@
 
 #include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/position_index.h>
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 
 namespace lodestone {
 
@@ -19,6 +21,7 @@ using detail::for_each_edge;
 using detail::HalfEdge;
 using detail::places_of;
 using detail::sorted_edges;
+using detail::text;
 
 Result<Connectivity> Connectivity::build(const Mesh& mesh) {
   Connectivity result;
@@ -28,8 +31,8 @@ Result<Connectivity> Connectivity::build(const Mesh& mesh) {
   result.wedge_vertex_ = &mesh.wedge_vertex;
   result.face_material_ = &mesh.face_material;
   result.face_count_ = mesh.face_count();
-  if (auto joined = result.join_faces(mesh); !joined) return tl::unexpected(joined.error());
-  if (auto anchored = result.anchor_vertices(); !anchored) return tl::unexpected(anchored.error());
+  LODESTONE_CHECK(result.join_faces(mesh));
+  LODESTONE_CHECK(result.anchor_vertices());
   result.link_copies(mesh);
   return result;
 }
@@ -37,8 +40,7 @@ Result<Connectivity> Connectivity::build(const Mesh& mesh) {
 Result<void> Connectivity::join_faces(const Mesh& mesh) {
   for (Index c = 0; c < corner_wedge_.size(); ++c)
     if (vertex(c) == vertex(next_corner(c)))
-      return fail(ErrorCode::InvalidArgument,
-                  "face " + std::to_string(face_of_corner(c)) + " repeats vertex " + std::to_string(vertex(c)));
+      return fail(ErrorCode::InvalidArgument, text("face ", face_of_corner(c), " repeats vertex ", vertex(c)));
   const std::vector<HalfEdge> halves = sorted_edges(mesh);
   for_each_edge(halves, [&](Edge edge) {
     // An edge of several faces, or of two that disagree on winding, stays a border of each.
@@ -73,8 +75,8 @@ Result<void> Connectivity::anchor_vertices() {
     vertex_corner_[v] = first_corner(vertex_corner_[v]);
     gather_star(v, star);
     if (star.corners.size() != corner_count[v])
-      return fail(ErrorCode::InvalidArgument, "vertex " + std::to_string(v) + " has " +
-                                                  std::to_string(corner_count[v]) + " faces in more than one fan");
+      return fail(ErrorCode::InvalidArgument,
+                  text("vertex ", v, " has ", corner_count[v], " faces in more than one fan"));
   }
   return {};
 }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include <lodestone/core/detail/edges.h>
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 
 namespace lodestone {
 namespace {
@@ -13,6 +15,7 @@ using detail::Edge;
 using detail::for_each_edge;
 using detail::HalfEdge;
 using detail::sort_edges;
+using detail::text;
 
 auto defect(const std::string& message) { return fail(ErrorCode::InvalidArgument, message); }
 
@@ -20,20 +23,20 @@ Result<void> check_face(const Connectivity& mesh, Index face) {
   const Index a = mesh.vertex(3 * face);
   const Index b = mesh.vertex(3 * face + 1);
   const Index c = mesh.vertex(3 * face + 2);
-  if (a == b || b == c || a == c) return defect("face " + std::to_string(face) + " repeats a vertex");
+  if (a == b || b == c || a == c) return defect(text("face ", face, " repeats a vertex"));
   return {};
 }
 
 Result<void> check_opposite(const Connectivity& mesh, Index corner) {
   const Index across = mesh.opposite(corner);
   if (across == kNoIndex) return {};
-  const std::string name = "corner " + std::to_string(corner);
+  const std::string name = text("corner ", corner);
   if (across >= 3 * mesh.face_slot_count() || !mesh.has_face(face_of_corner(across)))
-    return defect(name + " faces corner " + std::to_string(across) + ", which no face has");
-  if (mesh.opposite(across) != corner) return defect(name + " faces " + std::to_string(across) + ", but not back");
+    return defect(text(name, " faces corner ", across, ", which no face has"));
+  if (mesh.opposite(across) != corner) return defect(text(name, " faces ", across, ", but not back"));
   if (mesh.vertex(next_corner(corner)) != mesh.vertex(previous_corner(across)) ||
       mesh.vertex(previous_corner(corner)) != mesh.vertex(next_corner(across)))
-    return defect(name + " and " + std::to_string(across) + " do not share an edge");
+    return defect(text(name, " and ", across, " do not share an edge"));
   return {};
 }
 
@@ -51,8 +54,8 @@ Result<void> check_edges(const Connectivity& mesh) {
     if (edge.size() > 2 || (edge.size() == 2 && edge[0].forward == edge[1].forward)) twice = edge[0].corner;
   });
   if (twice == kNoIndex) return {};
-  return defect("edge between vertices " + std::to_string(mesh.vertex(twice)) + " and " +
-                std::to_string(mesh.vertex(next_corner(twice))) + " appears twice in one direction");
+  return defect(text("edge between vertices ", mesh.vertex(twice), " and ", mesh.vertex(next_corner(twice)),
+                     " appears twice in one direction"));
 }
 
 Result<void> check_fans(const Connectivity& mesh) {
@@ -61,14 +64,14 @@ Result<void> check_fans(const Connectivity& mesh) {
     if (mesh.has_face(face_of_corner(c))) ++corner_count[mesh.vertex(c)];
   Star star;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    const std::string name = "vertex " + std::to_string(v);
+    const std::string name = text("vertex ", v);
     if (!mesh.has_vertex(v)) {
-      if (corner_count[v] != 0) return defect(name + " is gone but has " + std::to_string(corner_count[v]) + " faces");
+      if (corner_count[v] != 0) return defect(text(name, " is gone but has ", corner_count[v], " faces"));
       continue;
     }
     const Index anchor = mesh.corner_at(v);
     if (!mesh.has_face(face_of_corner(anchor)) || mesh.vertex(anchor) != v)
-      return defect(name + " is anchored at corner " + std::to_string(anchor) + ", which is not its own");
+      return defect(text(name, " is anchored at corner ", anchor, ", which is not its own"));
     mesh.gather_star(v, star);
     if (star.corners.size() != corner_count[v]) return defect(name + " has more than one fan of faces");
     if (!star.closed && mesh.swing_right(anchor) != kNoIndex) return defect(name + " is not anchored at its border");
@@ -80,33 +83,29 @@ Result<void> check_fans(const Connectivity& mesh) {
 
 Result<void> validate(const Mesh& mesh) {
   if (mesh.corner_wedge.size() % 3 != 0)
-    return defect("corner count " + std::to_string(mesh.corner_wedge.size()) + " is not a multiple of 3");
+    return defect(text("corner count ", mesh.corner_wedge.size(), " is not a multiple of 3"));
   if (!mesh.face_material.empty() && mesh.face_material.size() != mesh.face_count())
-    return defect("material count " + std::to_string(mesh.face_material.size()) + " differs from face count " +
-                  std::to_string(mesh.face_count()));
+    return defect(text("material count ", mesh.face_material.size(), " differs from face count ", mesh.face_count()));
   for (std::size_t w = 0; w < mesh.wedge_count(); ++w)
     if (mesh.wedge_vertex[w] >= mesh.vertex_count())
-      return defect("wedge " + std::to_string(w) + " names vertex " + std::to_string(mesh.wedge_vertex[w]) + " of " +
-                    std::to_string(mesh.vertex_count()));
+      return defect(text("wedge ", w, " names vertex ", mesh.wedge_vertex[w], " of ", mesh.vertex_count()));
   for (std::size_t c = 0; c < mesh.corner_wedge.size(); ++c)
     if (mesh.corner_wedge[c] >= mesh.wedge_count())
-      return defect("corner " + std::to_string(c) + " names wedge " + std::to_string(mesh.corner_wedge[c]) + " of " +
-                    std::to_string(mesh.wedge_count()));
+      return defect(text("corner ", c, " names wedge ", mesh.corner_wedge[c], " of ", mesh.wedge_count()));
   for (const Attribute& attribute : mesh.attributes)
     if (attribute.data.size() != attribute.element_bytes() * mesh.wedge_count())
-      return defect("attribute " + attribute.name + " has " + std::to_string(attribute.data.size()) + " bytes for " +
-                    std::to_string(mesh.wedge_count()) + " wedges");
+      return defect(text("attribute ", attribute.name, " has ", attribute.data.size(), " bytes for ",
+                         mesh.wedge_count(), " wedges"));
   return {};
 }
 
 Result<void> validate(const Connectivity& mesh) {
   for (Index f = 0; f < mesh.face_slot_count(); ++f) {
     if (!mesh.has_face(f)) continue;
-    if (auto ok = check_face(mesh, f); !ok) return ok;
-    for (Index c = 3 * f; c < 3 * f + 3; ++c)
-      if (auto ok = check_opposite(mesh, c); !ok) return ok;
+    LODESTONE_CHECK(check_face(mesh, f));
+    for (Index c = 3 * f; c < 3 * f + 3; ++c) LODESTONE_CHECK(check_opposite(mesh, c));
   }
-  if (auto ok = check_edges(mesh); !ok) return ok;
+  LODESTONE_CHECK(check_edges(mesh));
   return check_fans(mesh);
 }
 

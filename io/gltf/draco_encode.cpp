@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <string>
 
@@ -91,11 +90,8 @@ class MeshBuilder {
   std::vector<int> attribute_ids_;
 };
 
-std::string exact_text(float value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.9g", static_cast<double>(value));
-  return digits;
-}
+/// Nine digits tell every float from the next.
+std::string exact_text(float value) { return number_text(static_cast<double>(value), 9); }
 
 /// Draco's own setters write numbers into its options with six decimals, which small things do not survive.
 void set_grid(draco::Options& options, const QuantizationGrid& grid) {

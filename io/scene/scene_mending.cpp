@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/text.h>
+
 namespace lodestone::detail {
 namespace {
 
@@ -148,8 +150,8 @@ class SkinColumns {
  public:
   SkinColumns(const MeshSource& source, LevelGeometry& level) {
     for (std::size_t set = 0;; ++set) {
-      const auto joints = find_column(source, "JOINTS_" + std::to_string(set)),
-                 weights = find_column(source, "WEIGHTS_" + std::to_string(set));
+      const auto joints = find_column(source, text("JOINTS_", set)),
+                 weights = find_column(source, text("WEIGHTS_", set));
       if (!joints || !weights) return;
       joints_.emplace_back(level, *joints);
       weights_.emplace_back(level, *weights);

@@ -4,12 +4,17 @@
 #include <cmath>
 #include <string>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
+
 namespace lodestone {
 namespace {
 
+using detail::text;
+
 auto defect(const std::string& message) { return fail(ErrorCode::Malformed, message); }
 
-std::string numbered(const char* thing, std::size_t i) { return std::string(thing) + " " + std::to_string(i); }
+std::string numbered(const char* thing, std::size_t i) { return text(thing, " ", i); }
 
 Index appended_faces(const SectorHeader& sector) { return static_cast<Index>(appended_face_count(sector.shape)); }
 
@@ -41,8 +46,7 @@ Index coarsest_within(const std::vector<T>& errors, double limit) {
 
 Result<void> expect_size(const char* name, std::size_t size, std::size_t expected) {
   if (size == expected) return {};
-  return defect(std::string(name) + " has " + std::to_string(size) + " entries where " + std::to_string(expected) +
-                " are due");
+  return defect(text(name, " has ", size, " entries where ", expected, " are due"));
 }
 
 /// Checks that a prefix-sum array starts at `first`, never falls and ends at `last`.
@@ -50,42 +54,31 @@ template <class T>
 Result<void> expect_offsets(const char* name, const std::vector<T>& offsets, std::uint64_t first, std::uint64_t last) {
   if (offsets.empty() || offsets.front() != first || offsets.back() != last ||
       !std::is_sorted(offsets.begin(), offsets.end()))
-    return defect(std::string(name) + " does not rise from " + std::to_string(first) + " to " + std::to_string(last));
-  return {};
-}
-
-/// Runs checks in turn and returns the first failure.
-Result<void> first_failure(std::initializer_list<Result<void>> checks) {
-  for (const Result<void>& check : checks)
-    if (!check) return check;
+    return defect(text(name, " does not rise from ", first, " to ", last));
   return {};
 }
 
 Result<void> check_arrays(const ProgressiveMesh& mesh) {
   const std::size_t records = mesh.record_count();
   if (mesh.sector_begin.empty() || mesh.polygon_begin.empty()) return defect("record arrays are empty");
-  if (auto ok = first_failure({
-          expect_size("polygon_begin", mesh.polygon_begin.size(), mesh.sectors.size() + 1),
-          expect_size("record_wedge_begin", mesh.record_wedge_begin.size(), records + 1),
-          expect_size("deviation", mesh.deviation.size(), records + 1),
-          expect_size("curvature_error", mesh.curvature_error.size(), records + 1),
-          expect_size("positions", mesh.positions.size(), mesh.base_vertex_count + records),
-          expect_offsets("sector_begin", mesh.sector_begin, 0, mesh.sectors.size()),
-          expect_offsets("polygon_begin", mesh.polygon_begin, 0, mesh.polygons.size()),
-          expect_offsets("record_wedge_begin", mesh.record_wedge_begin, mesh.base_wedge_count,
-                         mesh.wedge_vertex.size()),
-          expect_offsets("round_begin", mesh.round_begin, 0, records),
-      });
-      !ok)
-    return ok;
+  LODESTONE_CHECK(expect_size("polygon_begin", mesh.polygon_begin.size(), mesh.sectors.size() + 1));
+  LODESTONE_CHECK(expect_size("record_wedge_begin", mesh.record_wedge_begin.size(), records + 1));
+  LODESTONE_CHECK(expect_size("deviation", mesh.deviation.size(), records + 1));
+  LODESTONE_CHECK(expect_size("curvature_error", mesh.curvature_error.size(), records + 1));
+  LODESTONE_CHECK(expect_size("positions", mesh.positions.size(), mesh.base_vertex_count + records));
+  LODESTONE_CHECK(expect_offsets("sector_begin", mesh.sector_begin, 0, mesh.sectors.size()));
+  LODESTONE_CHECK(expect_offsets("polygon_begin", mesh.polygon_begin, 0, mesh.polygons.size()));
+  LODESTONE_CHECK(
+      expect_offsets("record_wedge_begin", mesh.record_wedge_begin, mesh.base_wedge_count, mesh.wedge_vertex.size()));
+  LODESTONE_CHECK(expect_offsets("round_begin", mesh.round_begin, 0, records));
   if (mesh.polygons.size() < 2 * mesh.sectors.size()) return defect("sectors have polygons of fewer than 2 corners");
   const std::size_t slots = mesh.polygons.size() - 2 * mesh.sectors.size();
-  if (auto ok = expect_size("slots", mesh.slots.size(), slots); !ok) return ok;
-  if (auto ok = expect_size("triangles", mesh.triangles.size(), 3 * slots); !ok) return ok;
+  LODESTONE_CHECK(expect_size("slots", mesh.slots.size(), slots));
+  LODESTONE_CHECK(expect_size("triangles", mesh.triangles.size(), 3 * slots));
   for (const Attribute& attribute : mesh.attributes)
     if (attribute.component_count == 0 || attribute.data.size() != attribute.element_bytes() * mesh.wedge_vertex.size())
-      return defect("attribute " + attribute.name + " has " + std::to_string(attribute.data.size()) + " bytes for " +
-                    std::to_string(mesh.wedge_vertex.size()) + " wedges");
+      return defect(text("attribute ", attribute.name, " has ", attribute.data.size(), " bytes for ",
+                         mesh.wedge_vertex.size(), " wedges"));
   return {};
 }
 
@@ -100,13 +93,12 @@ Result<void> check_values(const ProgressiveMesh& mesh) {
       return defect(numbered("position", p) + " has an error that is negative or not a number");
   for (std::size_t w = 0; w < mesh.base_wedge_count; ++w)
     if (mesh.wedge_vertex[w] >= mesh.base_vertex_count)
-      return defect(numbered("wedge", w) + " of the base mesh names vertex " + std::to_string(mesh.wedge_vertex[w]) +
-                    " of " + std::to_string(mesh.base_vertex_count));
+      return defect(text(numbered("wedge", w), " of the base mesh names vertex ", mesh.wedge_vertex[w], " of ",
+                         mesh.base_vertex_count));
   for (std::size_t k = 0; k < mesh.record_count(); ++k)
     for (Index w = mesh.record_wedge_begin[k]; w < mesh.record_wedge_begin[k + 1]; ++w)
       if (mesh.wedge_vertex[w] != mesh.base_vertex_count + k)
-        return defect(numbered("wedge", w) + " of record " + std::to_string(k) + " names vertex " +
-                      std::to_string(mesh.wedge_vertex[w]));
+        return defect(text(numbered("wedge", w), " of record ", k, " names vertex ", mesh.wedge_vertex[w]));
   return {};
 }
 
@@ -118,8 +110,8 @@ Result<void> check_base(const ProgressiveMesh& mesh) {
     const auto beyond =
         std::find_if(corners.begin(), corners.end(), [&](Index wedge) { return wedge >= mesh.base_wedge_count; });
     if (beyond != corners.end())
-      return defect(numbered("group", g) + " of the base mesh names wedge " + std::to_string(*beyond) + " of " +
-                    std::to_string(mesh.base_wedge_count));
+      return defect(
+          text(numbered("group", g), " of the base mesh names wedge ", *beyond, " of ", mesh.base_wedge_count));
   }
   return {};
 }
@@ -130,17 +122,16 @@ Result<void> check_sector(const ProgressiveMesh& mesh, std::size_t record, std::
   const std::string name = numbered("record", record);
   const std::uint64_t size = mesh.polygon_begin[s + 1] - mesh.polygon_begin[s];
   if (size != sector.polygon_size || !is_polygon_size(sector.shape, size))
-    return defect(name + " has a polygon of " + std::to_string(size) + " corners");
+    return defect(text(name, " has a polygon of ", size, " corners"));
   if (sector.group >= mesh.groups.size()) return defect(name + " names " + numbered("group", sector.group));
   if (sector.wedge >= mesh.record_wedge_begin[record + 1] - mesh.record_wedge_begin[record])
     return defect(name + " names its " + numbered("wedge", sector.wedge));
   for (std::uint64_t i = mesh.polygon_begin[s]; i < mesh.polygon_begin[s + 1]; ++i)
     if (mesh.polygons[i] >= mesh.record_wedge_begin[record])
-      return defect(name + " names wedge " + std::to_string(mesh.polygons[i]) + " before it exists");
+      return defect(text(name, " names wedge ", mesh.polygons[i], " before it exists"));
   for (std::uint64_t i = mesh.slot_begin(s); i < mesh.slot_begin(s) + size - 2; ++i) {
     if (mesh.slots[i] >= face_count[sector.group])
-      return defect(name + " names face " + std::to_string(mesh.slots[i]) + " of " +
-                    std::to_string(face_count[sector.group]));
+      return defect(text(name, " names face ", mesh.slots[i], " of ", face_count[sector.group]));
     const std::uint8_t* t = &mesh.triangles[3 * i];
     if (!(t[0] < t[1] && t[1] < t[2] && t[2] < size)) return defect(name + " has a triangle outside its polygon");
   }
@@ -152,14 +143,14 @@ Result<void> check_records(const ProgressiveMesh& mesh) {
   for (const FaceGroup& group : mesh.groups) face_count.push_back(group.base_corners.size() / 3);
   for (std::size_t k = 0; k < mesh.record_count(); ++k) {
     for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s)
-      if (auto ok = check_sector(mesh, k, s, face_count); !ok) return ok;
+      LODESTONE_CHECK(check_sector(mesh, k, s, face_count));
     for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s)
       face_count[mesh.sectors[s].group] += appended_faces(mesh.sectors[s]);
   }
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
     if (face_count[g] != mesh.groups[g].face_count)
-      return defect(numbered("group", g) + " ends with " + std::to_string(face_count[g]) + " faces where " +
-                    std::to_string(mesh.groups[g].face_count) + " are due");
+      return defect(text(numbered("group", g), " ends with ", face_count[g], " faces where ", mesh.groups[g].face_count,
+                         " are due"));
   return {};
 }
 
@@ -200,9 +191,9 @@ Index position_for_faces(const ProgressiveMesh& mesh, std::uint64_t face_count) 
 }
 
 Result<void> validate(const ProgressiveMesh& mesh) {
-  if (auto ok = check_arrays(mesh); !ok) return ok;
-  if (auto ok = check_values(mesh); !ok) return ok;
-  if (auto ok = check_base(mesh); !ok) return ok;
+  LODESTONE_CHECK(check_arrays(mesh));
+  LODESTONE_CHECK(check_values(mesh));
+  LODESTONE_CHECK(check_base(mesh));
   return check_records(mesh);
 }
 

@@ -10,6 +10,8 @@
 #include <limits>
 #include <string>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/core/validate.h>
 
 #include "distance/deviation_bounds.h"
@@ -464,18 +466,17 @@ BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b) {
 }
 
 Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options) {
-  if (auto valid = validate(mesh); !valid) return tl::unexpected(valid.error());
+  LODESTONE_CHECK(validate(mesh));
   if (!options.importance.empty() && options.importance.size() != mesh.vertex_count())
-    return fail(ErrorCode::InvalidArgument, "importance has " + std::to_string(options.importance.size()) +
-                                                " values for " + std::to_string(mesh.vertex_count()) + " vertices");
+    return fail(ErrorCode::InvalidArgument,
+                text("importance has ", options.importance.size(), " values for ", mesh.vertex_count(), " vertices"));
   std::vector<Index> source_vertex;
   const Mesh sorted = in_spatial_order(mesh, source_vertex);
-  auto connectivity = Connectivity::build(sorted);
-  if (!connectivity) return tl::unexpected(connectivity.error());
-  mark_creases(sorted, options, *connectivity);
+  LODESTONE_TRY(Connectivity connectivity, Connectivity::build(sorted));
+  mark_creases(sorted, options, connectivity);
   SimplifyOptions local = options;
   for (std::size_t v = 0; v < local.importance.size(); ++v) local.importance[v] = options.importance[source_vertex[v]];
-  SimplifyResult result = Simplifier(sorted, std::move(*connectivity), local).run();
+  SimplifyResult result = Simplifier(sorted, std::move(connectivity), local).run();
   const std::vector<std::uint8_t> locked = result.locked;
   for (std::size_t v = 0; v < locked.size(); ++v) result.locked[source_vertex[v]] = locked[v];
   return result;

@@ -21,6 +21,8 @@
 namespace lodestone {
 namespace {
 
+using detail::text;
+
 using namespace detail;
 
 /// Notes, each once, though several files may have it.

@@ -5,6 +5,7 @@
 #include <set>
 
 #include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
 #include <lodestone/lod/simplify_options.h>
 
 namespace lodestone {
@@ -80,7 +81,7 @@ Result<void> check_names(const Importance& importance, const Scene& scene) {
     materials.insert(mesh.materials.begin(), mesh.materials.end());
     nodes.insert(mesh.nodes.begin(), mesh.nodes.end());
   }
-  if (auto known = check_known(importance.materials, materials, "material"); !known) return known;
+  LODESTONE_CHECK(check_known(importance.materials, materials, "material"));
   return check_known(importance.nodes, nodes, "node");
 }
 
@@ -89,8 +90,7 @@ Result<std::vector<float>> vertex_importance(const SceneMesh& mesh, const Import
   if (!parts.materials.empty()) multiply_by_materials(mesh, parts, importance);
   const std::string wanted = parts.attribute.empty() ? kImportanceAttribute : parts.attribute;
   for (const Attribute& candidate : mesh.mesh.attributes)
-    if (candidate.name == wanted)
-      if (auto done = multiply_by_attribute(mesh, candidate, importance); !done) return tl::unexpected(done.error());
+    if (candidate.name == wanted) LODESTONE_CHECK(multiply_by_attribute(mesh, candidate, importance));
   if (std::all_of(importance.begin(), importance.end(), [](double i) { return i == 1; })) return std::vector<float>{};
   return std::vector<float>(importance.begin(), importance.end());
 }

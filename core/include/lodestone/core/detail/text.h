@@ -8,17 +8,20 @@
 
 namespace lodestone::detail {
 
+/// Returns a number with at most `digits` significant digits, and without an exponent where it can be had.
+inline std::string number_text(double value, int digits = 5) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
 inline void append_text(std::string& out, std::string_view part) { out += part; }
 inline void append_text(std::string& out, char part) { out += part; }
 inline void append_text(std::string& out, std::integral auto part) { out += std::to_string(part); }
 inline void append_text(std::string& out, const std::same_as<std::filesystem::path> auto& part) {
   out += part.string();
 }
-inline void append_text(std::string& out, double part) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%g", part);
-  out += buffer;
-}
+inline void append_text(std::string& out, double part) { out += number_text(part, 6); }
 
 /// Joins strings, characters, numbers and paths: `text("accessor ", 3, ": no bufferView")`.
 template <class... Parts>

@@ -4,7 +4,7 @@
 
 #include <lodestone/core/result.h>
 
-// Readers of untrusted bytes are chains of steps that can each fail; these two hand the first error to the caller.
+// Much is a chain of steps that can each fail; these two hand the first error to the caller.
 
 #define LODESTONE_JOIN_IMPL(a, b) a##b
 #define LODESTONE_JOIN(a, b) LODESTONE_JOIN_IMPL(a, b)
