@@ -38,9 +38,9 @@ double principal_curvature(const VertexCurvature& curvature) {
   return 2 * std::sqrt(curvature.mean * curvature.mean - curvature.gaussian * curvature.area);
 }
 
-VertexCurvature vertex_curvature(const Mesh& mesh, const Connectivity& connectivity, VertexId vertex) {
+VertexCurvature vertex_curvature(const Mesh& mesh, const Connectivity& connectivity, Index vertex) {
   VertexCurvature result;
-  const Index start = connectivity.corner_at(index_of(vertex));
+  const Index start = connectivity.corner_at(vertex);
   if (start == kNoIndex) return result;
   Index corner = start;
   do {
@@ -58,7 +58,7 @@ VertexCurvature vertex_curvature(const Mesh& mesh, const Connectivity& connectiv
 
 std::vector<VertexCurvature> vertex_curvatures(const Mesh& mesh, const Connectivity& connectivity) {
   std::vector<VertexCurvature> curvatures(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) curvatures[v] = vertex_curvature(mesh, connectivity, VertexId{v});
+  for (Index v = 0; v < mesh.vertex_count(); ++v) curvatures[v] = vertex_curvature(mesh, connectivity, v);
   return curvatures;
 }
 

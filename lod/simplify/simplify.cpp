@@ -265,7 +265,7 @@ void Simplifier::update_dirty() {
   const Connectivity& mesh = state_.connectivity;
   for (const Index site : dirty_)
     for (Index copy = site;;) {
-      state_.curvature[copy] = vertex_curvature(state_.mesh, mesh, VertexId{copy});
+      state_.curvature[copy] = vertex_curvature(state_.mesh, mesh, copy);
       copy = mesh.next_copy(copy);
       if (copy == site) break;
     }

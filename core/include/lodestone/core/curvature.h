@@ -25,7 +25,7 @@ struct VertexCurvature {
 double principal_curvature(const VertexCurvature& curvature);
 
 /// Returns the curvatures of one vertex; zero where it has no faces.
-VertexCurvature vertex_curvature(const Mesh& mesh, const Connectivity& connectivity, VertexId vertex);
+VertexCurvature vertex_curvature(const Mesh& mesh, const Connectivity& connectivity, Index vertex);
 
 /// Returns the curvatures of every vertex; zero for a vertex without faces. Shapes: mesh.vertex_count() entries.
 std::vector<VertexCurvature> vertex_curvatures(const Mesh& mesh, const Connectivity& connectivity);
