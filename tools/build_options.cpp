@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
 
 #include "build_settings.h"
 #include "error_size.h"
@@ -114,7 +115,7 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   options.strict = command.strict;
   options.keep_levels = command.html.has_value();
   options.storage = asset_options(command);
-  if (lower_extension(command.output) == ".gltf") options.storage.gltf_name = command.output.stem().string();
+  if (extension_of(command.output) == "gltf") options.storage.gltf_name = command.output.stem().string();
   return options;
 }
 

@@ -8,6 +8,7 @@
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
 #include <lodestone/io/screen_coverage.h>
 
 #include "asset_files.h"
@@ -32,8 +33,8 @@ bool is_level_name(const std::string& name, const std::string& stem) {
   if (!name.starts_with(stem)) return false;
   const std::size_t end = name.find_first_not_of("0123456789", stem.size());
   if (end == name.npos || end == stem.size()) return false;
-  const std::string extension = lower_extension(name.substr(stem.size()));
-  return name.find('.', end) == end && (extension == ".glb" || extension == ".gltf");
+  const std::string extension = extension_of(name.substr(stem.size()));
+  return name.find('.', end) == end && (extension == "glb" || extension == "gltf");
 }
 
 /// A .gltf has files beside it, and so needs a place.
@@ -47,8 +48,8 @@ Result<void> check_format(const BuildCommand& options) {
       return fail(ErrorCode::InvalidArgument, "-o: the standard output is a terminal: send it to a file or a program");
     return {};
   }
-  const std::string extension = lower_extension(options.output);
-  if (extension == ".glb" || extension == ".gltf") return {};
+  const std::string extension = extension_of(options.output);
+  if (extension == "glb" || extension == "gltf") return {};
   const std::string hint = extension.empty() ? ": write '" + options.output.string() + ".glb', or '" +
                                                    options.output.string() + "/' for a folder"
                                              : "";

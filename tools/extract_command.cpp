@@ -6,6 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/detail/text.h>
+#include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
 #include <lodestone/io/read_mesh.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
@@ -23,9 +26,11 @@
 namespace lodestone::tool {
 namespace {
 
-constexpr std::array kExtensions = {".glb", ".gltf", ".obj", ".ply"};
+using detail::text;
 
-/// Where the level goes: a file and its format, an extension with its dot.
+constexpr std::array kExtensions = {"glb", "gltf", "obj", "ply"};
+
+/// Where the level goes: a file and its format, an extension without its dot.
 struct Destination {
   std::filesystem::path path;
   std::string extension;
@@ -33,16 +38,16 @@ struct Destination {
 
 Result<Destination> check_destination_of(const FilePair& files, const std::string& format) {
   const bool is_stream = is_standard_stream(files.output);
-  const std::string extension = is_stream ? "." + format : lower_extension(files.output);
+  const std::string extension = is_stream ? format : extension_of(files.output);
   if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end()) {
     return fail(ErrorCode::InvalidArgument,
                 "-o: " + quoted(files.output) + " does not end in .glb, .gltf, .obj or .ply");
   }
-  if (is_stream && extension == ".gltf")
+  if (is_stream && extension == "gltf")
     return fail(ErrorCode::InvalidArgument, "--format: a .gltf is several files, the standard output takes one");
-  if (is_stream && extension != ".obj" && standard_output_is_terminal())
+  if (is_stream && extension != "obj" && standard_output_is_terminal())
     return fail(ErrorCode::InvalidArgument, "-o: the standard output is a terminal: send it to a file or a program");
-  if (Result<void> fit = check_destination(files.output); !fit) return tl::unexpected(fit.error());
+  LODESTONE_CHECK(check_destination(files.output));
   return Destination{files.output, extension};
 }
 
@@ -54,9 +59,8 @@ struct StreamedScene {
 };
 
 Result<StreamedScene> read_streams(const std::filesystem::path& path) {
-  Result<Scene> scene = read_levels(path, 0);
-  if (!scene) return tl::unexpected(scene.error());
-  StreamedScene streamed{std::move(*scene), {}, {}};
+  LODESTONE_TRY(Scene scene, read_levels(path, 0));
+  StreamedScene streamed{std::move(scene), {}, {}};
   for (std::size_t i = 0; i < streamed.scene.meshes().size(); ++i) {
     const SceneMesh& mesh = streamed.scene.meshes()[i];
     if (mesh.stream.empty()) continue;
@@ -125,35 +129,32 @@ Result<void> write_extracted(const std::filesystem::path& input, const Destinati
                              const Extracted& extracted) {
   AssetOptions options;
   options.draco = false;
-  if (to.extension == ".gltf") options.gltf_name = to.path.stem().string();
-  const Result<EncodedAsset> asset = encode_scene_level(scene, extracted.meshes, 0, options);
-  if (!asset) return tl::unexpected(asset.error());
+  if (to.extension == "gltf") options.gltf_name = to.path.stem().string();
+  LODESTONE_TRY(const EncodedAsset asset, encode_scene_level(scene, extracted.meshes, 0, options));
   StagedFiles files;
-  if (to.extension == ".glb" || to.extension == ".gltf") {
-    const Result<void> added = add_asset(*asset, to.path, {input, scene.files()}, files);
+  if (to.extension == "glb" || to.extension == "gltf") {
+    const Result<void> added = add_asset(asset, to.path, {input, scene.files()}, files);
     return added ? files.commit() : added;
   }
-  const Result<MeshFile> flat = read_mesh_bytes(asset->glb, "glb");
-  if (!flat) return tl::unexpected(flat.error());
-  const Result<std::vector<std::byte>> bytes = write_mesh_bytes(flat->mesh, to.path.stem().concat(to.extension));
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (Result<void> done = files.add(to.path, *bytes); !done) return done;
+  LODESTONE_TRY(const MeshFile flat, read_mesh_bytes(asset.glb, "glb"));
+  LODESTONE_TRY(const std::vector<std::byte> bytes,
+                write_mesh_bytes(flat.mesh, to.path.stem().concat("." + to.extension)));
+  LODESTONE_CHECK(files.add(to.path, bytes));
   return files.commit();
 }
 
 std::string missed_message(std::size_t face_count, const SceneChoice& choice) {
-  return std::to_string(face_count) + " faces are the fewest the file has" +
-         (choice.beyond.empty() ? ", " : " before its error leaps, ") +
-         std::to_string(static_cast<std::uint64_t>(choice.target.value)) + " were asked for";
+  return text(face_count, " faces are the fewest the file has",
+              choice.beyond.empty() ? ", " : " before its error leaps, ",
+              static_cast<std::uint64_t>(choice.target.value), " were asked for");
 }
 
 /// Takes a level as it stands in the file.
 Result<Outcome> extract_level_number(const ExtractCommand& options, const std::filesystem::path& input,
                                      const Destination& to) {
-  const Result<Scene> scene = read_levels(input, *options.level);
-  if (!scene) return tl::unexpected(scene.error());
-  const Extracted extracted = take_scene(*scene);
-  if (Result<void> done = write_extracted(input, to, *scene, extracted); !done) return tl::unexpected(done.error());
+  LODESTONE_TRY(const Scene scene, read_levels(input, *options.level));
+  const Extracted extracted = take_scene(scene);
+  LODESTONE_CHECK(write_extracted(input, to, scene, extracted));
   if (!options.quiet && !is_standard_stream(to.path))
     std::printf("%s: %zu faces, %zu vertices\n", to.path.c_str(), extracted.face_count, extracted.vertex_count);
   return Outcome::Done;
@@ -162,20 +163,17 @@ Result<Outcome> extract_level_number(const ExtractCommand& options, const std::f
 /// Takes a level out of the streams.
 Result<Outcome> extract_target(const ExtractCommand& options, const std::filesystem::path& input,
                                const LevelTarget& requested, const Destination& to) {
-  const Result<StreamedScene> streamed = read_streams(input);
-  if (!streamed) return tl::unexpected(streamed.error());
-  const double diagonal = streamed->scene.box().diagonal();
+  LODESTONE_TRY(const StreamedScene streamed, read_streams(input));
+  const double diagonal = streamed.scene.box().diagonal();
   for (const std::string& line : options.target.remarks(diagonal, true)) print_warning(line);
-  const SceneChoice choice = choose_positions(parts_of(*streamed), requested, TargetScope::Scene, diagonal);
-  const Extracted extracted = extract_positions(*streamed, choice.positions);
+  const SceneChoice choice = choose_positions(parts_of(streamed), requested, TargetScope::Scene, diagonal);
+  const Extracted extracted = extract_positions(streamed, choice.positions);
   if (!choice.met) {
     const std::string message = missed_message(extracted.face_count, choice);
     options.strict ? print_error(message) : print_warning(message);
     if (options.strict) return Outcome::TargetNotMet;
   }
-  if (Result<void> done = write_extracted(input, to, streamed->scene, extracted); !done) {
-    return tl::unexpected(done.error());
-  }
+  LODESTONE_CHECK(write_extracted(input, to, streamed.scene, extracted));
   if (!options.quiet && !is_standard_stream(to.path)) {
     std::printf("%s: %zu faces, %zu vertices, deviation at most %s (%s of the diagonal)\n", to.path.c_str(),
                 extracted.face_count, extracted.vertex_count, number_text(extracted.deviation).c_str(),
@@ -206,24 +204,20 @@ void ExtractCommand::add_to(CLI::App& app) {
 }
 
 Result<Outcome> ExtractCommand::run() const {
-  const Result<std::vector<FilePair>> pairs = files.pair_up("." + format);
-  if (!pairs) return tl::unexpected(pairs.error());
-  if (pairs->size() > 1) return fail(ErrorCode::InvalidArgument, "extract takes one input");
-  const std::filesystem::path& input = pairs->front().input;
-  const Result<std::vector<LevelTarget>> targets = target.parse();
-  if (!targets) return tl::unexpected(targets.error());
-  if (targets->size() + (level ? 1 : 0) != 1) {
+  LODESTONE_TRY(const std::vector<FilePair> pairs, files.pair_up("." + format));
+  if (pairs.size() > 1) return fail(ErrorCode::InvalidArgument, "extract takes one input");
+  const std::filesystem::path& input = pairs.front().input;
+  LODESTONE_TRY(const std::vector<LevelTarget> targets, target.parse());
+  if (targets.size() + (level ? 1 : 0) != 1) {
     return fail(ErrorCode::InvalidArgument, "give one value with one of --error, --epsilon, --faces, --ratio, --level");
   }
   MadeFolders folders;
-  if (pairs->front().in_folder) {
-    if (Result<void> made = folders.make(pairs->front().output.parent_path()); !made)
-      return tl::unexpected(made.error());
+  if (pairs.front().in_folder) {
+    LODESTONE_CHECK(folders.make(pairs.front().output.parent_path()));
   }
-  const Result<Destination> destination = check_destination_of(pairs->front(), format);
-  if (!destination) return tl::unexpected(destination.error());
-  return level ? extract_level_number(*this, input, *destination)
-               : extract_target(*this, input, targets->front(), *destination);
+  LODESTONE_TRY(const Destination destination, check_destination_of(pairs.front(), format));
+  return level ? extract_level_number(*this, input, destination)
+               : extract_target(*this, input, targets.front(), destination);
 }
 
 }  // namespace lodestone::tool

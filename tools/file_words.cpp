@@ -1,7 +1,6 @@
 #include "file_words.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <string_view>
 #include <system_error>
@@ -11,6 +10,7 @@
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/io/file.h>
 
 #include "messages.h"
 #include "standard_streams.h"
@@ -22,11 +22,11 @@ using detail::text;
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kWritten[] = {".glb", ".gltf", ".obj", ".ply", ".json", ".html"};
+constexpr std::string_view kWritten[] = {"glb", "gltf", "obj", "ply", "json", "html"};
 
 /// What ends like a file that is written means one, even where a folder has that name.
 bool ends_like_a_file(const fs::path& path) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = extension_of(path);
   return std::find(std::begin(kWritten), std::end(kWritten), extension) != std::end(kWritten);
 }
 
@@ -110,13 +110,6 @@ bool FileWords::reads_standard_input() const {
 
 fs::path place_in(const fs::path& path, const fs::path& input, const std::string& extension, bool several) {
   return is_folder(path, several) ? path / input.stem().concat(extension) : path;
-}
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 }  // namespace lodestone::tool

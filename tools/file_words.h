@@ -44,7 +44,4 @@ struct FileWords {
 std::filesystem::path place_in(const std::filesystem::path& path, const std::filesystem::path& input,
                                const std::string& extension, bool several);
 
-/// Returns an extension in small letters, with its dot.
-std::string lower_extension(const std::filesystem::path& path);
-
 }  // namespace lodestone::tool

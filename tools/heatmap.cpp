@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include <lodestone/io/file.h>
 #include <lodestone/io/write_mesh.h>
 
 #include "colour_map.h"
@@ -30,7 +31,7 @@ Attribute colours(const Mesh& mesh, std::span<const float> errors, double upper)
 }  // namespace
 
 Result<void> check_heatmap_path(const std::filesystem::path& path) {
-  if (lower_extension(path) == ".ply" || lower_extension(path) == ".glb") return {};
+  if (extension_of(path) == "ply" || extension_of(path) == "glb") return {};
   return fail(ErrorCode::InvalidArgument, "--heatmap: " + quoted(path) + " does not end in .ply or .glb");
 }
 

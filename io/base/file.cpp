@@ -148,6 +148,12 @@ Result<std::filesystem::path> follow_links(const std::filesystem::path& path) {
   return not_written(path, ELOOP);
 }
 
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = detail::lower_case(path.extension().string());
+  if (!extension.empty()) extension.erase(0, 1);
+  return extension;
+}
+
 std::filesystem::path stand_in_name(const std::filesystem::path& path, std::string_view tag) {
   std::filesystem::path name = path;
   return name.replace_filename(text('.', path.filename().string().substr(0, kKeptBytesOfAName), tag));

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include <lodestone/core/result.h>
@@ -15,8 +14,5 @@ using FileFetcher = std::function<Result<std::vector<std::byte>>(const std::file
 
 /// Returns what fetches files beside or below a file; it goes by names in any case where the exact one is not there.
 FileFetcher files_beside(const std::filesystem::path& path);
-
-/// Returns a path's extension in lower case, without the dot.
-std::string extension_of(const std::filesystem::path& path);
 
 }  // namespace lodestone::detail

@@ -5,7 +5,6 @@
 #include <lodestone/io/file.h>
 #include <lodestone/io/read_mesh.h>
 
-#include "base/files_beside.h"
 #include "base/json.h"
 #include "formats/read_mesh_bytes.h"
 #include "gltf/gltf_container.h"

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -27,13 +26,6 @@ namespace {
 using Rgb = std::array<float, 3>;
 
 constexpr std::size_t kMostNamed = 5;
-
-std::string lower(std::string_view word) {
-  std::string out(word);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 /// An option of a map statement and how many arguments it has at most; those of vectors may be fewer.
 struct MapOption {
@@ -320,7 +312,7 @@ void MaterialLibraries::add(std::string_view names) {
   for (std::string_view token; !(token = next_token(names)).empty();) {
     if (!name.empty()) name += ' ';
     name += token;
-    if (!lower(name).ends_with(".mtl") || trimmed(names).empty()) continue;
+    if (!lower_case(name).ends_with(".mtl") || trimmed(names).empty()) continue;
     add_library(tidy_path(name), false);
     name.clear();
     several = true;
@@ -344,7 +336,7 @@ void MaterialLibraries::parse(std::string_view rest, const std::filesystem::path
     std::string_view line = without_comment(next_line(rest));
     const std::string_view keyword = next_token(line);
     if (keyword.empty()) continue;
-    const std::string key = lower(keyword);
+    const std::string key = lower_case(keyword);
     if (key == "newmtl") {
       entry = &entries_[std::string(trimmed(line))];
       *entry = {folder, {}};

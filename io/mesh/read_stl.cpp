@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <utility>
 
@@ -28,17 +27,10 @@ constexpr std::size_t kTriangleBytes = 50;
 constexpr std::uint16_t kFlag = 0x8000;
 constexpr float kLargestComponent = 31;
 
-std::string lower(std::string_view word) {
-  std::string out(word);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
 bool says_solid(std::string_view text) {
   text = without_byte_order_mark(text);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-  return lower(text.substr(0, 5)) == "solid";
+  return lower_case(text.substr(0, 5)) == "solid";
 }
 
 /// The header may say "solid" in a binary file, too: the size decides.
@@ -161,7 +153,7 @@ Result<PolygonSoup> read_ascii(std::string_view rest) {
   };
   for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
     std::string_view line = next_line(rest);
-    const std::string keyword = lower(next_token(line));
+    const std::string keyword = lower_case(next_token(line));
     if (keyword == "vertex") {
       LODESTONE_TRY(const Vec3f v, read_vertex(line, line_number));
       loop.push_back(v);

@@ -4,14 +4,13 @@
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 
-#include "base/files_beside.h"
 #include "mesh/mesh_writers.h"
 #include "scene/write_glb.h"
 
 namespace lodestone {
 
 Result<std::vector<std::byte>> write_mesh_bytes(const Mesh& mesh, const std::filesystem::path& path) {
-  const std::string extension = detail::extension_of(path);
+  const std::string extension = extension_of(path);
   if (extension == "obj") return detail::to_obj(mesh);
   if (extension == "ply") return detail::to_ply(mesh);
   if (extension == "glb") return detail::to_glb(mesh, path.stem().string());

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,9 @@ Result<void> write_file(const std::filesystem::path& path, std::span<const std::
 /// Returns what a chain of symbolic links at `path` leads to, whether that exists or not; `path` itself where it is no
 /// link. Errors: NotWritten where the chain has no end.
 Result<std::filesystem::path> follow_links(const std::filesystem::path& path);
+
+/// Returns a path's extension in small letters, without the dot.
+std::string extension_of(const std::filesystem::path& path);
 
 /// Returns a hidden name beside `path` for a file that is to take its place. It ends in `tag` and is short enough
 /// wherever the name of `path` is, however long that may be. Pre: `tag` has at most 40 bytes.

@@ -31,4 +31,12 @@ std::string text(const Parts&... parts) {
   return out;
 }
 
+/// Returns a word with its capital letters A to Z made small.
+inline std::string lower_case(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 }  // namespace lodestone::detail
