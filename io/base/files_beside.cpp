@@ -32,4 +32,8 @@ FileFetcher files_beside(const std::filesystem::path& path) {
   };
 }
 
+Result<std::vector<std::byte>> nothing_beside(const std::filesystem::path& relative) {
+  return fail(ErrorCode::Unreadable, text("'", relative, "' lies outside the bytes given"));
+}
+
 }  // namespace lodestone::detail

@@ -15,4 +15,7 @@ using FileFetcher = std::function<Result<std::vector<std::byte>>(const std::file
 /// Returns what fetches files beside or below a file; it goes by names in any case where the exact one is not there.
 FileFetcher files_beside(const std::filesystem::path& path);
 
+/// Fetches nothing: for what is read from memory. Its error is Unreadable.
+Result<std::vector<std::byte>> nothing_beside(const std::filesystem::path& relative);
+
 }  // namespace lodestone::detail

@@ -8,8 +8,6 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr std::size_t kMaxDepth = 200;
-
 std::size_t nesting_depth(std::string_view text) {
   std::size_t depth = 0, deepest = 0;
   bool in_string = false;
@@ -49,8 +47,8 @@ std::optional<std::size_t> as_size(const Json& value) {
 }
 
 Result<Json> parse_json(std::string_view source) {
-  if (const std::size_t depth = nesting_depth(source); depth > kMaxDepth)
-    return fail(ErrorCode::LimitExceeded, text("json: nested ", depth, " deep, more than ", kMaxDepth));
+  if (const std::size_t depth = nesting_depth(source); depth > kMaxJsonDepth)
+    return fail(ErrorCode::LimitExceeded, text("json: nested ", depth, " deep, more than ", kMaxJsonDepth));
   try {
     return Json::parse(source);
   } catch (const Json::parse_error& error) {

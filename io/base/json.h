@@ -15,8 +15,10 @@ namespace lodestone::detail {
 /// Keeps members in the order they came in, so that what we write is deterministic and what we keep stays as it was.
 using Json = nlohmann::ordered_json;
 
-/// Parses UTF-8 text. Errors: Malformed with the offset; LimitExceeded where it nests deeper than any sane document,
-/// since writing it out again recurses.
+/// How deep documents may nest: writing them out again recurses.
+inline constexpr std::size_t kMaxJsonDepth = 200;
+
+/// Parses UTF-8 text. Errors: Malformed with the offset; LimitExceeded where it nests deeper than that.
 Result<Json> parse_json(std::string_view text);
 
 /// Returns the member of an object, or null where there is none or `value` is no object.

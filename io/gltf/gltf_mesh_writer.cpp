@@ -12,18 +12,6 @@
 #include "gltf/gltf_attribute.h"
 
 namespace lodestone::detail {
-namespace {
-
-/// One element for each wedge, each on a multiple of 4 bytes as glTF demands of vertex data.
-std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_t element_bytes, std::size_t stride) {
-  const std::size_t count = packed.size() / element_bytes;
-  std::vector<std::byte> out(count * stride);
-  for (std::size_t i = 0; i < count; ++i)
-    std::copy_n(packed.begin() + i * element_bytes, element_bytes, out.begin() + i * stride);
-  return out;
-}
-
-}  // namespace
 
 std::vector<FacesOfMaterial> split_by_material(const Mesh& mesh) {
   std::map<Index, FacesOfMaterial> groups;
@@ -67,6 +55,31 @@ Mesh in_hardware_order(const Mesh& mesh) {
   return out;
 }
 
+std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_t element_bytes, std::size_t stride) {
+  const std::size_t count = packed.size() / element_bytes;
+  std::vector<std::byte> out(count * stride);
+  for (std::size_t i = 0; i < count; ++i)
+    std::copy_n(packed.begin() + i * element_bytes, element_bytes, out.begin() + i * stride);
+  return out;
+}
+
+PackedIndices pack_indices(std::span<const Index> indices, std::size_t point_count) {
+  const bool narrow = point_count <= 0xffff;  // The largest value of a type is not an index.
+  const std::vector<std::uint16_t> shorts(indices.begin(), narrow ? indices.end() : indices.begin());
+  const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
+  return {narrow ? ComponentType::UInt16 : ComponentType::UInt32, {bytes.begin(), bytes.end()}};
+}
+
+PositionBounds bounds_of(std::span<const std::byte> positions) {
+  Vec3f low = load<Vec3f>(positions, 0), high = low;
+  for (std::size_t at = sizeof(Vec3f); at < positions.size(); at += sizeof(Vec3f)) {
+    const auto p = load<Vec3f>(positions, at);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return {low, high};
+}
+
 std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh) {
   const std::vector<Vec3f> positions = pick_entries(mesh.positions, mesh.wedge_vertex);
   const auto bytes = std::as_bytes(std::span(positions));
@@ -90,15 +103,11 @@ std::size_t add_attribute(GlbBuilder& builder, const Attribute& attribute) {
 }
 
 std::size_t add_indices(GlbBuilder& builder, std::span<const Index> indices, std::size_t point_count) {
-  const bool narrow = point_count <= 0xffff;  // The largest value of a type is not an index.
-  const std::vector<std::uint16_t> shorts(indices.begin(), narrow ? indices.end() : indices.begin());
-  const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
-  const std::size_t view = builder.add_view(bytes, ViewTarget::Indices);
-  return builder.add("accessors",
-                     {{"bufferView", view},
-                      {"componentType", static_cast<int>(narrow ? ComponentType::UInt16 : ComponentType::UInt32)},
-                      {"count", indices.size()},
-                      {"type", "SCALAR"}});
+  const PackedIndices packed = pack_indices(indices, point_count);
+  return builder.add("accessors", {{"bufferView", builder.add_view(packed.bytes, ViewTarget::Indices)},
+                                   {"componentType", static_cast<int>(packed.type)},
+                                   {"count", indices.size()},
+                                   {"type", "SCALAR"}});
 }
 
 Json attribute_accessor(const AccessorData& data) {
@@ -115,12 +124,7 @@ Json position_accessor(const AccessorData& data) {
 }
 
 void set_bounds(Json& accessor, std::span<const std::byte> positions) {
-  Vec3f low = load<Vec3f>(positions, 0), high = low;
-  for (std::size_t at = sizeof(Vec3f); at < positions.size(); at += sizeof(Vec3f)) {
-    const auto p = load<Vec3f>(positions, at);
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  const auto [low, high] = bounds_of(positions);
   accessor["min"] = {low.x, low.y, low.z};
   accessor["max"] = {high.x, high.y, high.z};
 }

@@ -32,6 +32,22 @@ Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<co
 /// of first use. Faces of one material stay together.
 Mesh in_hardware_order(const Mesh& mesh);
 
+/// Returns packed elements each on a multiple of 4 bytes, as glTF demands of vertex data.
+std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_t element_bytes, std::size_t stride);
+
+/// Indices in the narrowest type that glTF lets them have.
+struct PackedIndices {
+  ComponentType type = ComponentType::UInt32;
+  std::vector<std::byte> bytes;
+};
+PackedIndices pack_indices(std::span<const Index> indices, std::size_t point_count);
+
+/// The box of positions that lie as tightly packed floats x, y, z. Pre: there is at least one.
+struct PositionBounds {
+  Vec3f low, high;
+};
+PositionBounds bounds_of(std::span<const std::byte> positions);
+
 /// Write elements for every wedge, or indices, uncompressed. Return the accessor's index.
 std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh);
 std::size_t add_attribute(GlbBuilder& builder, const Attribute& attribute);
@@ -41,7 +57,7 @@ std::size_t add_indices(GlbBuilder& builder, std::span<const Index> indices, std
 Json attribute_accessor(const AccessorData& data);
 Json position_accessor(const AccessorData& data);
 
-/// Sets min and max as glTF wants them of positions, from tightly packed floats x, y, z. Pre: there is at least one.
+/// Sets min and max as glTF wants them of positions. Pre: as `bounds_of`.
 void set_bounds(Json& accessor, std::span<const std::byte> positions);
 
 }  // namespace lodestone::detail

@@ -1,5 +1,7 @@
 #include "scene/scene_images.h"
 
+#include <set>
+
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -37,13 +39,14 @@ std::string shortened(const std::string& uri) { return uri.size() <= 60 ? uri : 
 
 }  // namespace
 
-std::vector<EmbeddedImage> fetch_images(const GltfDocument& document, const FileFetcher& fetch,
-                                        std::vector<std::string>& notes) {
-  std::vector<EmbeddedImage> images;
+void fetch_images(const GltfDocument& document, const FileFetcher& fetch, std::vector<EmbeddedImage>& images,
+                  std::vector<std::string>& notes) {
+  std::set<std::size_t> known;
+  for (const EmbeddedImage& image : images) known.insert(image.image);
   for (std::size_t i = 0; i < document.count("images"); ++i) {
     const Json& image = document.list("images")[i];
     const std::string uri = string_member(image, "uri");
-    if (uri.empty()) continue;
+    if (uri.empty() || known.contains(i)) continue;
     auto embedded = fetch_image(image, uri, fetch);
     if (!embedded) {
       notes.push_back(
@@ -53,7 +56,6 @@ std::vector<EmbeddedImage> fetch_images(const GltfDocument& document, const File
     embedded->image = i;
     images.push_back(std::move(*embedded));
   }
-  return images;
 }
 
 }  // namespace lodestone::detail

@@ -8,9 +8,9 @@
 
 namespace lodestone::detail {
 
-/// Gets the images that lie in files of their own or in data URIs, to be embedded. One that cannot be had keeps its
-/// uri, and a note says so.
-std::vector<EmbeddedImage> fetch_images(const GltfDocument& document, const FileFetcher& fetch,
-                                        std::vector<std::string>& notes);
+/// Adds the images that lie in files of their own or in data URIs, to be embedded; those that `images` has already
+/// stay. One that cannot be had keeps its uri, and a note says so.
+void fetch_images(const GltfDocument& document, const FileFetcher& fetch, std::vector<EmbeddedImage>& images,
+                  std::vector<std::string>& notes);
 
 }  // namespace lodestone::detail

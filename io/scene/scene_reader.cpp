@@ -17,6 +17,7 @@
 #include "scene/scene_impl.h"
 #include "scene/scene_mesh.h"
 #include "scene/scene_places.h"
+#include "scene/scene_reader.h"
 #include "scene/scene_undo.h"
 #include "scene/stream_extension.h"
 
@@ -24,10 +25,6 @@ namespace lodestone {
 namespace {
 
 using namespace detail;
-
-Result<std::vector<std::byte>> nothing_beside(const std::filesystem::path& relative) {
-  return fail(ErrorCode::Unreadable, text("'", relative, "' lies outside the bytes given"));
-}
 
 Error with_path(Error error, const std::filesystem::path& path) {
   error.message = text('\'', path, "': ", error.message);
@@ -103,9 +100,10 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
 enum class Levels { Refused, TakenOut };
 
 Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetcher& fetch_any, Levels levels,
-                              std::size_t level = 0) {
+                              std::size_t level = 0, std::vector<EmbeddedImage> images = {}) {
   auto scene = std::make_shared<Scene::Impl>();
   scene->in_metres = true;
+  scene->images = std::move(images);
   const auto fetch = [&](const std::filesystem::path& relative) {
     auto file = fetch_any(relative);
     if (file) scene->files.push_back(relative);
@@ -119,11 +117,15 @@ Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetche
     LODESTONE_CHECK(take_out_levels(*scene, level));
   }
   LODESTONE_CHECK(read_meshes(*scene, levels == Levels::TakenOut && level == 0));
-  scene->images = fetch_images(scene->document, fetch, scene->notes);
+  fetch_images(scene->document, fetch, scene->images, scene->notes);
   return Scene(std::move(scene));
 }
 
 }  // namespace
+
+Result<Scene> detail::read_with_images(std::span<const std::byte> bytes, std::vector<EmbeddedImage> images) {
+  return read_gltf_scene(bytes, nothing_beside, Levels::Refused, 0, std::move(images));
+}
 
 Result<Scene> Scene::read(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
