@@ -9,25 +9,9 @@
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/simplify.h>
 
+#include "square.h"
+
 namespace {
-
-constexpr lodestone::Index kSide = 8;
-
-lodestone::TriangleSoup square() {
-  lodestone::TriangleSoup soup;
-  for (lodestone::Index j = 0; j <= kSide; ++j) {
-    for (lodestone::Index i = 0; i <= kSide; ++i) {
-      soup.positions.push_back({static_cast<float>(i), static_cast<float>(j), static_cast<float>(i * j) * 0.01f});
-    }
-  }
-  for (lodestone::Index j = 0; j < kSide; ++j) {
-    for (lodestone::Index i = 0; i < kSide; ++i) {
-      const lodestone::Index a = j * (kSide + 1) + i, b = a + 1, c = b + kSide + 1, d = c - 1;
-      soup.indices.insert(soup.indices.end(), {a, b, c, a, c, d});
-    }
-  }
-  return soup;
-}
 
 template <class T>
 T value_or_exit(lodestone::Result<T> result) {
@@ -40,7 +24,7 @@ T value_or_exit(lodestone::Result<T> result) {
 
 int main(int argc, char** argv) {
   if (argc != 2) return 1;
-  const auto assembled = value_or_exit(lodestone::assemble(square()));
+  const auto assembled = value_or_exit(lodestone::assemble(square_soup()));
   const auto simplified = value_or_exit(lodestone::simplify(assembled.mesh));
   const lodestone::Cursor base(simplified.mesh);
   if (!lodestone::write_mesh(argv[1], lodestone::extract_level(simplified.mesh, base))) return 1;
