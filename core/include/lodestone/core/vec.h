@@ -39,7 +39,7 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 inline double squared_length(const Vec3& a) { return dot(a, a); }
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 
-/// Whether a vector has a direction: it is finite and not zero.
+/// Whether a vector has a direction: its length is finite and not zero.
 inline bool has_direction(const Vec3& a) {
   const double l = length(a);
   return std::isfinite(l) && l > 0;
@@ -48,7 +48,7 @@ inline bool has_direction(const Vec3& a) {
 /// Returns `a` scaled to length 1, or the zero vector where `a` has no direction.
 inline Vec3 normalized(const Vec3& a) {
   const double l = length(a);
-  return l > 0 ? a * (1.0 / l) : Vec3{};
+  return std::isfinite(l) && l > 0 ? a * (1.0 / l) : Vec3{};
 }
 
 /// Returns the angle between two directions in radians, accurate near 0 and π; 0 where one of them is zero.
