@@ -3,38 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
-#include <map>
 #include <sstream>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include <lodestone/core/assemble.h>
 #include <lodestone/io/read_mesh.h>
 #include <lodestone/lod/deviation.h>
-#include <lodestone/lod/level_deviation.h>
 
 #include "support/catch.h"
 #include "support/data.h"
+#include "support/deviations.h"
+#include "support/mesh_properties.h"
 #include "support/random.h"
-#include "support/shapes.h"
 
 namespace lodestone::test {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Mesh mesh_of(const TriangleSoup& soup) { return assemble(soup).value().mesh; }
-
-/// A mesh as it is, with nothing joined or dropped.
-Mesh raw_mesh(std::vector<Vec3f> positions, std::vector<Index> corners) {
-  Mesh mesh;
-  for (Index v = 0; v < positions.size(); ++v) mesh.wedge_vertex.push_back(v);
-  mesh.positions = std::move(positions);
-  mesh.corner_wedge = std::move(corners);
-  return mesh;
-}
 
 Vec3f random_point(Random& random, double size) {
   const auto coordinate = [&] { return static_cast<float>(size * random.signed_unit()); };
@@ -67,108 +50,8 @@ Mesh scaled(Mesh mesh, double factor) {
   return mesh;
 }
 
-Mesh shifted(Mesh mesh, float x, float y, float z) {
-  for (Vec3f& p : mesh.positions) p = {p.x + x, p.y + y, p.z + z};
-  return mesh;
-}
-
-double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const double ee = squared_length(b - a);
-  const double t = ee > 0 ? std::clamp(dot(p - a, b - a) / ee, 0.0, 1.0) : 0;
-  return length(p - (a + (b - a) * t));
-}
-
-/// The distance to a triangle from its definition: to its edges, or to its plane where the foot is inside.
-double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  double distance = std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
-  const Vec3 n = normalized(cross(b - a, c - a));
-  const Vec3 foot = p - n * dot(p - a, n);
-  const bool inside =
-      dot(cross(b - a, foot - a), n) > 0 && dot(cross(c - b, foot - b), n) > 0 && dot(cross(a - c, foot - c), n) > 0;
-  return inside ? std::min(distance, length(p - foot)) : distance;
-}
-
-double distance_to_all(const Vec3& p, const Mesh& mesh) {
-  double distance = kInfinity;
-  for (Index f = 0; f < mesh.face_count(); ++f) {
-    distance = std::min(distance, triangle_distance(p, mesh.corner_position(3 * f), mesh.corner_position(3 * f + 1),
-                                                    mesh.corner_position(3 * f + 2)));
-  }
-  return distance;
-}
-
-/// A range that certainly holds the supremum: dense samples, and how far any point may be from one.
-struct SampledSupremum {
-  double low = 0;
-  double high = 0;
-};
-
-SampledSupremum sample_supremum(const Mesh& from, const Mesh& to, int steps) {
-  const SurfaceIndex index(to);
-  SampledSupremum result;
-  for (Index f = 0; f < from.face_count(); ++f) {
-    const Vec3 a = from.corner_position(3 * f), b = from.corner_position(3 * f + 1),
-               c = from.corner_position(3 * f + 2);
-    double largest = 0;
-    for (int i = 0; i <= steps; ++i) {
-      for (int j = 0; i + j <= steps; ++j) {
-        const Vec3 p = a + (b - a) * (1.0 * i / steps) + (c - a) * (1.0 * j / steps);
-        largest = std::max(largest, index.nearest(p, kInfinity).distance);
-      }
-    }
-    const double spacing = std::max({length(b - a), length(c - b), length(a - c)}) / steps;
-    result.low = std::max(result.low, largest);
-    result.high = std::max(result.high, largest + spacing);
-  }
-  return result;
-}
-
-/// The vertices of each cell of a grid become the first of them: a level with some of the mesh's vertices, never clean.
-Mesh clustered(const Mesh& mesh, double cell) {
-  std::map<std::tuple<long, long, long>, Index> first;
-  std::vector<Index> kept(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    const Vec3f& p = mesh.positions[v];
-    kept[v] = first.emplace(std::tuple{std::lround(p.x / cell), std::lround(p.y / cell), std::lround(p.z / cell)}, v)
-                  .first->second;
-  }
-  std::vector<Index> corners;
-  for (Index c = 0; c < mesh.corner_wedge.size(); c += 3) {
-    const Index x = kept[mesh.corner_vertex(c)], y = kept[mesh.corner_vertex(c + 1)],
-                z = kept[mesh.corner_vertex(c + 2)];
-    if (x != y && y != z && z != x) corners.insert(corners.end(), {x, y, z});
-  }
-  return raw_mesh(mesh.positions, std::move(corners));
-}
-
-/// The mesh without a share of its faces, chosen by the seed.
-Mesh with_holes(const Mesh& mesh, double share, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<Index> corners;
-  for (Index c = 0; c < mesh.corner_wedge.size(); c += 3) {
-    if (random.unit() < share) continue;
-    for (Index i = 0; i < 3; ++i) corners.push_back(mesh.corner_vertex(c + i));
-  }
-  return raw_mesh(mesh.positions, std::move(corners));
-}
-
-void check_contains(const OneSidedDeviation& found, const SampledSupremum& sampled) {
-  CHECK(found.maximum <= found.maximum_bound);
-  CHECK(found.maximum <= sampled.high * (1 + 1e-9) + 1e-12);
-  CHECK(found.maximum_bound >= sampled.low * (1 - 1e-9) - 1e-12);
-}
-
-double allowed(double maximum, const DeviationOptions& options, double diagonal) {
-  const double absolute = options.absolute_tolerance > 0 ? options.absolute_tolerance : 1e-7 * diagonal;
-  return (maximum * (1 + options.relative_tolerance) + absolute) * (1 + 1e-9);
-}
-
 bool near(double value, double expected, double relative, double absolute = 0) {
   return std::abs(value - expected) <= relative * std::abs(expected) + absolute;
-}
-
-bool overlap(const Deviation& a, const Deviation& b) {
-  return a.maximum() <= b.maximum_bound() + 1e-12 && b.maximum() <= a.maximum_bound() + 1e-12;
 }
 
 /// The mesh turned so that none of its directions is an axis', and made longer along one of them before.
@@ -349,9 +232,6 @@ TEST_CASE("empty meshes deviate by infinity from others and not from each other"
   CHECK(measure_deviation(mesh, Mesh{}).forward.mean == kInfinity);
   CHECK(measure_deviation(Mesh{}, mesh).maximum() == kInfinity);
   CHECK(measure_maximum(mesh, SurfaceIndex(mesh), Mesh{}, {}).maximum() == kInfinity);
-  LevelDeviation levels(mesh);
-  CHECK(levels.measure(Mesh{}).maximum() == kInfinity);
-  CHECK(levels.measure(mesh).maximum_bound() < 1e-6);
 }
 
 TEST_CASE("every shape equals itself") {
@@ -551,40 +431,6 @@ TEST_CASE("the same meshes give the same numbers, and swapped ones the sides swa
   CHECK(first.forward.mean == swapped.backward.mean);
   CHECK(first.backward.rms == swapped.forward.rms);
   CHECK(first.backward.maximum == swapped.forward.maximum);
-}
-
-TEST_CASE("levels measured one after the other agree with each on its own") {
-  const std::vector<NamedShape> shapes = all_shapes();
-  for (const NamedShape& shape : shapes) {
-    const Mesh mesh = mesh_of(shape.soup);
-    if (mesh.face_count() == 0) continue;
-    const double diagonal = bounding_box(mesh).diagonal();
-    std::vector<Mesh> levels = {mesh, with_holes(mesh, 0.1, 1), with_holes(mesh, 0.1, 2)};
-    for (const double cell : {0.01, 0.02, 0.05, 0.06, 0.1, 0.2, 0.05})
-      levels.push_back(clustered(mesh, cell * diagonal));
-    levels.push_back(shifted(mesh, 0.1F, 0, 0));
-    levels.push_back(shifted(mesh, 0, 0.4F, 0));
-    levels.push_back(mesh);
-
-    DeviationOptions options;
-    options.relative_tolerance = 0.01;
-    LevelDeviation with_moves(mesh, options);
-    LevelDeviation without_moves(mesh, options);
-    const SurfaceIndex index(mesh);
-    const Mesh* last = nullptr;
-    for (const Mesh& level : levels) {
-      INFO(shape.name << ", level of " << level.face_count() << " faces");
-      double moved = kInfinity;
-      if (last && last->face_count() > 0)
-        moved = measure_maximum(*last, SurfaceIndex(*last), level, options).forward.maximum_bound;
-      last = &level;
-      const Deviation alone = measure_maximum(mesh, index, level, options);
-      for (const Deviation& found : {with_moves.measure(level, moved), without_moves.measure(level)}) {
-        CHECK(overlap(found, alone));
-        if (level.face_count() > 0) CHECK(found.maximum_bound() <= allowed(found.maximum(), options, diagonal));
-      }
-    }
-  }
 }
 
 TEST_CASE("mean, rms and maximum agree with Metro") {
