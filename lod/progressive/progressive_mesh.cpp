@@ -1,11 +1,15 @@
 #include <lodestone/lod/progressive_mesh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/lod/cursor.h>
+
+#include "progressive/canonical_face.h"
 
 namespace lodestone {
 namespace {
@@ -30,6 +34,8 @@ bool is_polygon_size(SectorShape shape, std::uint64_t size) {
   }
   return false;
 }
+
+bool is_error(float value) { return std::isfinite(value) && value >= 0; }
 
 /// Whether a record adds faces to a piece that is coming into being.
 bool adds_lone_faces(const ProgressiveMesh& mesh, Index record) {
@@ -89,8 +95,8 @@ Result<void> check_values(const ProgressiveMesh& mesh) {
       return defect(numbered("vertex", v) + " has a position that is not finite");
   }
   for (std::size_t p = 0; p < mesh.deviation.size(); ++p)
-    if (!(mesh.deviation[p] >= 0) || !(mesh.curvature_error[p] >= 0))
-      return defect(numbered("position", p) + " has an error that is negative or not a number");
+    if (!is_error(mesh.deviation[p]) || !is_error(mesh.curvature_error[p]))
+      return defect(numbered("position", p) + " has an error that is negative or not finite");
   for (std::size_t w = 0; w < mesh.base_wedge_count; ++w)
     if (mesh.wedge_vertex[w] >= mesh.base_vertex_count)
       return defect(text(numbered("wedge", w), " of the base mesh names vertex ", mesh.wedge_vertex[w], " of ",
@@ -154,6 +160,28 @@ Result<void> check_records(const ProgressiveMesh& mesh) {
   return {};
 }
 
+/// Checks that every coarse face is the one that lies in its slot, by going through all levels. Coarsening then leaves
+/// no wedge behind that is gone. Pre: check_records found nothing.
+Result<void> check_coarse_faces(const ProgressiveMesh& mesh) {
+  for (Cursor cursor(mesh); cursor.position() < mesh.record_count(); cursor.refine()) {
+    const Index record = cursor.position();
+    for (Index s = mesh.sector_begin[record]; s < mesh.sector_begin[record + 1]; ++s) {
+      const Index* polygon = mesh.polygons.data() + mesh.polygon_begin[s];
+      const Index group = mesh.sectors[s].group;
+      for (std::uint64_t i = mesh.slot_begin(s); i < mesh.slot_begin(s + 1); ++i) {
+        const std::uint8_t* t = &mesh.triangles[3 * i];
+        std::array<Index, 3> face;
+        detail::write_canonical(face.data(), polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+        const auto there = cursor.corners(group).subspan(3 * std::size_t{mesh.slots[i]}, 3);
+        if (!std::equal(face.begin(), face.end(), there.begin()))
+          return defect(text(numbered("record", record), " does not fit ", numbered("face", mesh.slots[i]), " of ",
+                             numbered("group", group)));
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<Index> face_counts(const ProgressiveMesh& mesh) {
@@ -194,7 +222,8 @@ Result<void> validate(const ProgressiveMesh& mesh) {
   LODESTONE_CHECK(check_arrays(mesh));
   LODESTONE_CHECK(check_values(mesh));
   LODESTONE_CHECK(check_base(mesh));
-  return check_records(mesh);
+  LODESTONE_CHECK(check_records(mesh));
+  return check_coarse_faces(mesh);
 }
 
 }  // namespace lodestone

@@ -213,28 +213,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("selection: at most the faces asked for, and the fewest within the error asked for") {
-  const Mesh mesh = mesh_of(terrain(24, 9));
-  const SimplifyResult result = simplified(mesh);
-  const std::vector<Index> counts = face_counts(result.mesh);
-  CHECK(std::is_sorted(counts.begin(), counts.end()));
-  CHECK(counts.back() == mesh.face_count());
-  for (const std::uint64_t faces : {100U, 101U, 500U, 100000U}) {
-    const Index p = position_for_faces(result.mesh, faces);
-    CHECK(counts[p] <= faces);
-    if (p + 1 < counts.size()) CHECK(counts[p + 1] > faces);
-  }
-  CHECK(position_for_faces(result.mesh, 0) == 0);
-  Index last = static_cast<Index>(result.mesh.record_count());
-  for (const double e : {0.0, 1e-4, 1e-3, 1e-2, 1e-1, 1e3}) {
-    const Index p = position_for_deviation(result.mesh, e);
-    CHECK(static_cast<double>(result.mesh.deviation[p]) <= e);
-    for (Index coarser = 0; coarser < p; ++coarser) CHECK(static_cast<double>(result.mesh.deviation[coarser]) > e);
-    CHECK(p <= last);
-    last = p;
-  }
-}
-
 TEST_CASE("curvature errors never fall towards the base, and stop a run where told to") {
   const Mesh mesh = mesh_of(icosphere(3, 0.02, 4));
   SimplifyOptions options;
@@ -608,30 +586,6 @@ TEST_CASE("what skins and morph targets do counts: their middles stay dense wher
     return static_cast<double>(inside) / static_cast<double>(level.vertex_count());
   };
   CHECK(share_inside(level_of(morph_grid(16), 1)) > 1.5 * share_inside(level_of(morph_grid(16), 0)));
-}
-
-TEST_CASE("an error in the record's numbers is found") {
-  const SimplifyResult result = simplified(mesh_of(seam_cube(3)));
-  const auto message = [&](auto&& spoil) {
-    ProgressiveMesh mesh = result.mesh;
-    spoil(mesh);
-    const auto valid = validate(mesh);
-    return valid ? std::string("valid") : valid.error().message;
-  };
-  CHECK(message([](ProgressiveMesh&) {}) == "valid");
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.polygons[0] = 100000; }),
-             contains("names wedge 100000 before it exists"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.slots[0] = 100000; }), contains("names face 100000"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.triangles[2] = 200; }), contains("triangle outside its polygon"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors[0].group = 9; }), contains("names group 9"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors[0].shape = static_cast<SectorShape>(7); }),
-             contains("polygon of"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.deviation[0] = -1; }), contains("error that is negative"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.groups[0].face_count += 1; }), contains("are due"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.positions.pop_back(); }), contains("positions has"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.round_begin.back() += 1; }), contains("round_begin"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.groups.clear(); }), contains("group"));
-  CHECK_THAT(message([](ProgressiveMesh& m) { m.wedge_vertex.back() = 0; }), contains("wedge"));
 }
 
 }  // namespace lodestone::test

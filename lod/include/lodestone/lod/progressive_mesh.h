@@ -94,10 +94,12 @@ Index position_for_deviation(const ProgressiveMesh& mesh, double deviation);
 /// Returns the coarsest position whose curvature error is at most `epsilon` (the metric's own unit).
 Index position_for_curvature_error(const ProgressiveMesh& mesh, double epsilon);
 
-/// Returns the finest whole position with at most `face_count` faces; 0 where even the base mesh has more.
+/// Returns the finest whole position with at most `face_count` faces; 0 where even the base mesh has more. Of positions
+/// that differ only by vertices without faces, of pieces yet to come, the coarsest.
 Index position_for_faces(const ProgressiveMesh& mesh, std::uint64_t face_count);
 
-/// Checks every length, index and count of a mesh that came from outside, so that any cursor over it stays in bounds.
+/// Checks every length, index and count of a mesh that came from outside, and that coarse faces are those they replace:
+/// so that any cursor over it stays in bounds, and comes back to where it was.
 /// Errors: Malformed, naming the record and the number at fault. Cost: one replay of all records.
 Result<void> validate(const ProgressiveMesh& mesh);
 
