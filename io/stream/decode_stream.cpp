@@ -80,6 +80,10 @@ class StreamDecoder {
   }
 
   Result<ProgressiveMesh> finish() {
+    const bool is_whole = mesh_.record_count() == start_.header.record_count;
+    const std::size_t rounds = mesh_.round_begin.size() - 1;
+    if (is_whole ? rounds != start_.header.round_count : rounds > start_.header.round_count)
+      return broken(text(rounds, " rounds, where the header has ", start_.header.round_count));
     for (std::size_t g = 0; g < mesh_.groups.size(); ++g)
       mesh_.groups[g].face_count = static_cast<Index>(faces_->face_count(g));
     LODESTONE_CHECK(validate(mesh_));
@@ -118,7 +122,11 @@ class StreamDecoder {
       Attribute attribute;
       const std::uint32_t name_bytes = table.next();
       if (name_bytes > kMaxNameBytes) return broken(text("attribute ", a, " has a name of ", name_bytes, " bytes"));
-      for (std::uint32_t i = 0; i < name_bytes; ++i) attribute.name.push_back(static_cast<char>(table.next()));
+      for (std::uint32_t i = 0; i < name_bytes; ++i) {
+        const std::uint32_t character = table.next();
+        if (character > 255) return broken(text("attribute ", a, " has a name with the character ", character));
+        attribute.name.push_back(static_cast<char>(character));
+      }
       const auto type = component_type(table.next());
       const std::uint32_t count = table.next(), normalized = table.next();
       if (!type || count < 1 || count > 16 || normalized > 1)
@@ -262,7 +270,8 @@ class StreamDecoder {
                         centre = values[kCentres].next();
     const std::uint32_t shapes = start_.directory.version_major == 1 ? 2 : 4;  // version 1 had two
     const auto shape = static_cast<SectorShape>(centre % shapes);
-    if (size < (shape == SectorShape::Open || shape == SectorShape::Lone ? 2u : 3u) || size > kMaxPolygonSize)
+    if (size < (shape == SectorShape::Open || shape == SectorShape::Lone ? 2u : 3u) ||
+        size > (shape == SectorShape::Lone ? 2u : kMaxPolygonSize))
       return broken(text("polygon of ", size, " corners"));
     if (group >= mesh_.groups.size()) return broken(text("group ", group, " of ", mesh_.groups.size()));
     if (centre / shapes >= wedge_count) return broken(text("wedge ", centre / shapes, " of ", wedge_count));
@@ -346,7 +355,7 @@ Result<ProgressiveMesh> decode_stream(std::span<const std::byte> bytes) {
   for (std::size_t i = 0; i < start.directory.chunks.size(); ++i) {
     const StreamChunk& chunk = start.directory.chunks[i];
     const std::uint64_t room = bytes.size() - chunk.byte_offset;
-    if (room == 0 && i > 0) break;  // a prefix: the level so far is complete
+    if (room == 0 && i > 0 && chunk.byte_length > 0) break;  // a prefix: the level so far is complete
     if (chunk.byte_length > room)
       return fail(ErrorCode::Malformed,
                   text("stream: ends inside chunk ", i, ": ", room, " of ", chunk.byte_length, " bytes"), bytes.size());
