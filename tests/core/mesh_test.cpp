@@ -1,11 +1,16 @@
 #include <lodestone/core/mesh.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "support/mesh_properties.h"
@@ -46,47 +51,77 @@ Attribute attribute_of(ComponentType type, bool normalized, const std::vector<T>
   return attribute;
 }
 
-/// Every value of an integer type but the lowest of those with a sign, ascending.
 template <class T>
-std::vector<T> all_values() {
-  std::vector<T> values;
-  const int least = std::numeric_limits<T>::is_signed ? -std::numeric_limits<T>::max() : 0;
-  for (int value = least; value <= std::numeric_limits<T>::max(); ++value) values.push_back(static_cast<T>(value));
-  return values;
+std::vector<float> values_of(ComponentType type, bool normalized, const std::vector<T>& stored) {
+  return component_values(type, normalized, std::as_bytes(std::span(stored)));
 }
 
 template <class T>
-void check_conversion(ComponentType type) {
-  const std::vector<T> values = all_values<T>();
-  const std::vector<float> plain = attribute_values(attribute_of(type, false, values));
-  const std::vector<float> normalized = attribute_values(attribute_of(type, true, values));
-  REQUIRE(plain.size() == values.size());
-  REQUIRE(normalized.size() == values.size());
-  const double unit = std::numeric_limits<T>::max();
-  CHECK(largest_component(type) == unit);
-  CHECK(component_bytes(type) == sizeof(T));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (plain[i] != static_cast<float>(values[i])) FAIL_CHECK("value " << i << " is " << plain[i]);
-    if (std::abs(static_cast<double>(normalized[i]) - values[i] / unit) > 1e-7) FAIL_CHECK(i << ": " << normalized[i]);
-    if (i > 0 && !(normalized[i - 1] < normalized[i])) FAIL_CHECK("value " << i << " does not rise");
+T stored_as(ComponentType type, bool normalized, double value) {
+  std::array<std::byte, sizeof(T)> bytes{};
+  store_component(type, normalized, value, bytes.data());
+  T stored{};
+  std::memcpy(&stored, bytes.data(), sizeof stored);
+  return stored;
+}
+
+/// All values of an integer type come back from their floats, but for the two that stand for −1.
+template <class T>
+void check_every_value(ComponentType type) {
+  for (int i = std::numeric_limits<T>::min(); i <= std::numeric_limits<T>::max(); ++i) {
+    const T value = static_cast<T>(i);
+    const double plain = values_of<T>(type, false, {value})[0];
+    const double unit = values_of<T>(type, true, {value})[0];
+    const bool back = stored_as<T>(type, false, plain) == value && plain == i && -1 <= unit && unit <= 1 &&
+                      stored_as<T>(type, true, unit) == std::max(i, -int{std::numeric_limits<T>::max()});
+    if (!back) FAIL_CHECK("value " << i);
   }
-  CHECK(normalized.front() == (std::numeric_limits<T>::is_signed ? -1 : 0));
-  CHECK(normalized.back() == 1);
 }
 
 }  // namespace
 
-TEST_CASE("integers become the numbers they are, or rise to 1 where they are normalized") {
-  check_conversion<std::int8_t>(ComponentType::Int8);
-  check_conversion<std::uint8_t>(ComponentType::UInt8);
-  check_conversion<std::int16_t>(ComponentType::Int16);
-  check_conversion<std::uint16_t>(ComponentType::UInt16);
-  const std::vector<std::uint32_t> wide = {0, 1, 16777216, 0x80000000, 0xffffffff};
-  CHECK(attribute_values(attribute_of(ComponentType::UInt32, false, wide)) ==
-        std::vector<float>{0, 1, 16777216, 0x1p31F, 0x1p32F});
-  CHECK(attribute_values(attribute_of(ComponentType::UInt32, true, wide)) ==
-        std::vector<float>{0, 0x1p-32F, 0x1p-8F, 0.5F, 1});
-  CHECK(largest_component(ComponentType::UInt32) == 0xffffffff);
+TEST_CASE("a component has the bytes of its type, and the largest stands for 1") {
+  const std::map<ComponentType, std::pair<std::size_t, double>> expected = {{ComponentType::Int8, {1, 127}},
+                                                                            {ComponentType::UInt8, {1, 255}},
+                                                                            {ComponentType::Int16, {2, 32767}},
+                                                                            {ComponentType::UInt16, {2, 65535}},
+                                                                            {ComponentType::UInt32, {4, 4294967295.0}},
+                                                                            {ComponentType::Float32, {4, 1}}};
+  for (const ComponentType type : kTypes) {
+    CHECK(component_bytes(type) == expected.at(type).first);
+    CHECK(largest_component(type) == expected.at(type).second);
+  }
+}
+
+using Floats = std::vector<float>;
+
+TEST_CASE("normalized integers end at exactly 1, 0 and −1") {
+  CHECK(values_of<std::int8_t>(ComponentType::Int8, true, {-128, -127, 0, 127}) == Floats{-1, -1, 0, 1});
+  CHECK(values_of<std::uint8_t>(ComponentType::UInt8, true, {0, 51, 255}) == Floats{0, 0.2F, 1});
+  CHECK(values_of<std::int16_t>(ComponentType::Int16, true, {-32768, -32767, 0, 32767}) == Floats{-1, -1, 0, 1});
+  CHECK(values_of<std::uint16_t>(ComponentType::UInt16, true, {0, 13107, 65535}) == Floats{0, 0.2F, 1});
+  CHECK(values_of<std::uint32_t>(ComponentType::UInt32, true, {0, 0xffffffff}) == Floats{0, 1});
+}
+
+TEST_CASE("integers that are not normalized, and floats, are what they are") {
+  CHECK(values_of<std::int8_t>(ComponentType::Int8, false, {-128, 127}) == Floats{-128, 127});
+  CHECK(values_of<std::int16_t>(ComponentType::Int16, false, {-32768, 32767}) == Floats{-32768, 32767});
+  CHECK(values_of<std::uint16_t>(ComponentType::UInt16, false, {65535}) == Floats{65535});
+  CHECK(values_of<float>(ComponentType::Float32, false, {-3.5F, 7e30F}) == Floats{-3.5F, 7e30F});
+  CHECK(values_of<float>(ComponentType::Float32, true, {-3.5F}) == Floats{-3.5F});
+}
+
+TEST_CASE("components are stored as the nearest value that there is") {
+  check_every_value<std::int8_t>(ComponentType::Int8);
+  check_every_value<std::uint8_t>(ComponentType::UInt8);
+  check_every_value<std::int16_t>(ComponentType::Int16);
+  check_every_value<std::uint16_t>(ComponentType::UInt16);
+  CHECK(stored_as<std::uint8_t>(ComponentType::UInt8, true, 1.5) == 255);
+  CHECK(stored_as<std::uint8_t>(ComponentType::UInt8, true, -0.1) == 0);
+  CHECK(stored_as<std::uint8_t>(ComponentType::UInt8, true, 0.299 / 255) == 0);
+  CHECK(stored_as<std::int16_t>(ComponentType::Int16, false, 1e9) == 32767);
+  CHECK(stored_as<std::uint32_t>(ComponentType::UInt32, false, 4294967295.0) == 0xffffffff);
+  CHECK(stored_as<float>(ComponentType::Float32, true, 1.5) == 1.5F);
 }
 
 TEST_CASE("floats come through bit for bit, normalized or not") {

@@ -545,7 +545,7 @@ TEST_CASE("holes that no fan fills are filled without turning a face over") {
 
 TEST_CASE("with an angle for creases, hard edges of files without normals stay lines") {
   const Mesh mesh = mesh_of(faceted_cylinder(12, 6));
-  Mesh bare = mesh_of({to_soup(mesh).positions, {}, to_soup(mesh).indices, {}});
+  Mesh bare = mesh_of({to_soup(mesh).positions, {}, to_soup(mesh).indices, {}, {}});
   SimplifyOptions options;
   options.crease_angle = 0.1;
   const SimplifyResult result = simplified(bare, options);
@@ -558,7 +558,7 @@ TEST_CASE("with an angle for creases, hard edges of files without normals stay l
 
 TEST_CASE("creases are simplified along themselves at no change of curvature") {
   const Mesh mesh = mesh_of(faceted_cylinder(12, 6));
-  Mesh bare = mesh_of({to_soup(mesh).positions, {}, to_soup(mesh).indices, {}});
+  Mesh bare = mesh_of({to_soup(mesh).positions, {}, to_soup(mesh).indices, {}, {}});
   for (const Metric metric : {Metric::Mean, Metric::Principal}) {
     SimplifyOptions options;
     options.crease_angle = 0.1;
@@ -574,7 +574,7 @@ TEST_CASE("what skins and morph targets do counts: their middles stay dense wher
   const auto level_of = [](const TriangleSoup& soup, double weight) {
     const Mesh mesh = mesh_of(soup);
     SimplifyOptions options;
-    options.weights = {0, 0, 0, weight, weight};
+    options.weights = {0, 0, 0, weight, weight, {}};
     const SimplifyResult result = simplified(mesh, options);
     Cursor cursor(result.mesh);
     cursor.seek(position_for_faces(result.mesh, mesh.face_count() / 4));
