@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <lodestone/core/detail/try.h>
-#include <lodestone/io/read_mesh.h>
 
 #include "html_report.h"
 
@@ -15,15 +14,6 @@ namespace {
 
 constexpr int kBoundCount = 160;
 constexpr double kBoundRange = 1e6;  // from the largest bound that is shown to the smallest
-
-/// Returns a level as the scene shows it: the meshes in their places, as one.
-Result<Mesh> world_level(const Scene& scene, std::span<const LeveledMesh> levels, std::size_t level) {
-  AssetOptions options;
-  options.draco = false;
-  LODESTONE_TRY(const EncodedAsset asset, encode_scene_level(scene, levels, level, options));
-  LODESTONE_TRY(MeshFile flat, read_mesh_bytes(asset.glb, "glb"));
-  return std::move(flat.mesh);
-}
 
 /// Returns what the streams promise: pairs of drawn faces and the world error that they are proved to lie within.
 Json bounds_json(const Scene& scene, const std::vector<SimplifyResult>& streams) {
@@ -65,7 +55,7 @@ Result<std::string> build_page(const BuildReport& report, const Scene& scene, bo
                   {"report", std::move(numbers)},
                   {"bounds", with_bounds ? bounds_json(scene, report.build.simplified) : Json::array()}};
   for (std::size_t i = 0; i < report.build.levels.size(); ++i) {
-    LODESTONE_TRY(Mesh level, world_level(scene, report.build.decoded, i));
+    LODESTONE_TRY(Mesh level, level_surface(scene, report.build.decoded, i));
     page.meshes.push_back(std::move(level));
   }
   return html_page(page);

@@ -9,7 +9,6 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
-#include <lodestone/io/read_mesh.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
 #include <lodestone/io/write_mesh.h>
@@ -127,19 +126,19 @@ Extracted take_scene(const Scene& scene) {
 /// A glTF keeps the scene; other formats get its triangles in world space.
 Result<void> write_extracted(const std::filesystem::path& input, const Destination& to, const Scene& scene,
                              const Extracted& extracted) {
-  AssetOptions options;
-  options.draco = false;
-  if (to.extension == "gltf") options.gltf_name = to.path.stem().string();
-  LODESTONE_TRY(const EncodedAsset asset, encode_scene_level(scene, extracted.meshes, 0, options));
   StagedFiles files;
   if (to.extension == "glb" || to.extension == "gltf") {
-    const Result<void> added = add_asset(asset, to.path, {input, scene.files()}, files);
-    return added ? files.commit() : added;
+    AssetOptions options;
+    options.draco = false;
+    if (to.extension == "gltf") options.gltf_name = to.path.stem().string();
+    LODESTONE_TRY(const EncodedAsset asset, encode_scene_level(scene, extracted.meshes, 0, options));
+    LODESTONE_CHECK(add_asset(asset, to.path, {input, scene.files()}, files));
+  } else {
+    LODESTONE_TRY(const Mesh surface, level_surface(scene, extracted.meshes, 0));
+    LODESTONE_TRY(const std::vector<std::byte> bytes,
+                  write_mesh_bytes(surface, to.path.stem().concat("." + to.extension)));
+    LODESTONE_CHECK(files.add(to.path, bytes));
   }
-  LODESTONE_TRY(const MeshFile flat, read_mesh_bytes(asset.glb, "glb"));
-  LODESTONE_TRY(const std::vector<std::byte> bytes,
-                write_mesh_bytes(flat.mesh, to.path.stem().concat("." + to.extension)));
-  LODESTONE_CHECK(files.add(to.path, bytes));
   return files.commit();
 }
 

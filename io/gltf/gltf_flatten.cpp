@@ -41,8 +41,6 @@ bool is_known(std::string_view name) {
                      [&](auto prefix) { return name.starts_with(prefix); });
 }
 
-using Primitives = std::map<std::size_t, std::vector<Primitive>>;  // by mesh
-
 bool same_layout(const Attribute& a, const Attribute& b) {
   return a.name == b.name && a.type == b.type && a.component_count == b.component_count && a.normalized == b.normalized;
 }
@@ -288,14 +286,8 @@ std::vector<std::string> note_left_out(const GltfDocument& document, const Primi
 
 }  // namespace
 
-Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) {
-  LODESTONE_TRY(const auto instances, collect_instances(document, level));
-  PrimitiveReader reader(document);
-  Primitives meshes;
-  for (const MeshInstance& instance : instances) {
-    if (meshes.contains(instance.mesh)) continue;
-    LODESTONE_TRY(meshes[instance.mesh], reader.read_mesh(instance.mesh));
-  }
+Result<SoupFile> flatten_instances(const GltfDocument& document, std::span<const MeshInstance> instances,
+                                   Primitives meshes) {
   LODESTONE_TRY(Joints joints, read_skins(document, instances));
   CommonAttributes common = find_common_attributes(meshes, document.count("skins") > 0);
 
@@ -314,10 +306,23 @@ Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) 
   }
   auto& materials = file.soup.face_material;
   if (std::all_of(materials.begin(), materials.end(), [](Index m) { return m == 0; })) materials.clear();
-  file.notes = note_left_out(document, reader.omissions());
   if (!common.dropped.empty())
     file.notes.push_back(
         text("attributes that not all primitives have in one layout are left out: ", join(common.dropped)));
+  return file;
+}
+
+Result<SoupFile> flatten_scene(const GltfDocument& document, std::size_t level) {
+  LODESTONE_TRY(const auto instances, collect_instances(document, level));
+  PrimitiveReader reader(document);
+  Primitives meshes;
+  for (const MeshInstance& instance : instances) {
+    if (meshes.contains(instance.mesh)) continue;
+    LODESTONE_TRY(meshes[instance.mesh], reader.read_mesh(instance.mesh));
+  }
+  LODESTONE_TRY(SoupFile file, flatten_instances(document, instances, std::move(meshes)));
+  const std::vector<std::string> left_out = note_left_out(document, reader.omissions());
+  file.notes.insert(file.notes.begin(), left_out.begin(), left_out.end());
   return file;
 }
 

@@ -46,13 +46,6 @@ Result<std::vector<Vec3f>> to_positions(const AccessorData& data, const std::str
   return positions;
 }
 
-/// Directions are turned with a flattened scene and so have to be floats; everything else is only moved.
-Attribute to_attribute(const std::string& name, const AccessorData& data, PrimitiveContent content) {
-  const bool turns = content == PrimitiveContent::Surface && (name == "NORMAL" || name == "TANGENT");
-  if (turns) return float_attribute(name, data.component_count, to_floats(data));
-  return {name, data.type, data.component_count, data.normalized, data.bytes};
-}
-
 std::vector<Index> all_in_order(std::size_t count) {
   std::vector<Index> indices(count);
   for (std::size_t i = 0; i < count; ++i) indices[i] = static_cast<Index>(i);
@@ -106,13 +99,6 @@ void drop_unused_points(Primitive& primitive) {
   primitive.positions = pick_entries(primitive.positions, points.used());
 }
 
-Result<Index> material_number(const Json& primitive, const GltfDocument& document, const std::string& where) {
-  if (find_member(primitive, "material") == nullptr) return Index{0};
-  LODESTONE_TRY(const std::size_t material, size_member(primitive, "material", where));
-  LODESTONE_CHECK(document.element("materials", (where + ": material").c_str(), material));
-  return static_cast<Index>(material + 1);
-}
-
 Result<void> check_attribute(const Primitive& primitive, const std::string& name, const AccessorData& data,
                              const std::string& where) {
   if (data.component_count > 4)
@@ -123,6 +109,19 @@ Result<void> check_attribute(const Primitive& primitive, const std::string& name
 }
 
 }  // namespace
+
+Attribute to_attribute(const std::string& name, const AccessorData& data, PrimitiveContent content) {
+  const bool turns = content == PrimitiveContent::Surface && (name == "NORMAL" || name == "TANGENT");
+  if (turns) return float_attribute(name, data.component_count, to_floats(data));
+  return {name, data.type, data.component_count, data.normalized, data.bytes};
+}
+
+Result<Index> material_number(const Json& primitive, const GltfDocument& document, const std::string& where) {
+  if (find_member(primitive, "material") == nullptr) return Index{0};
+  LODESTONE_TRY(const std::size_t material, size_member(primitive, "material", where));
+  LODESTONE_CHECK(document.element("materials", (where + ": material").c_str(), material));
+  return static_cast<Index>(material + 1);
+}
 
 std::string target_attribute_name(std::size_t target, const std::string& semantic) {
   return text("TARGET_", target, ':', semantic);

@@ -29,6 +29,13 @@ enum class PrimitiveContent {
   Whole,    ///< all as the file stores them
 };
 
+/// Returns what an accessor holds as an attribute. Directions are turned with a flattened scene and so have to be
+/// floats; everything else is only moved.
+Attribute to_attribute(const std::string& name, const AccessorData& data, PrimitiveContent content);
+
+/// Returns a primitive's material in the document + 1; 0 for none. Errors: Malformed.
+Result<Index> material_number(const Json& primitive, const GltfDocument& document, const std::string& where);
+
 /// Returns the attribute that carries a morph target's member; the same for every writer and reader of scenes.
 std::string target_attribute_name(std::size_t target, const std::string& semantic);
 

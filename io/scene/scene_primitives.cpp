@@ -89,12 +89,6 @@ class GeometryWriter {
   }
 
  private:
-  std::vector<const Attribute*> pick(const SourcePrimitive& primitive) const {
-    std::vector<const Attribute*> picked;
-    for (const std::size_t column : primitive.columns) picked.push_back(level_.columns[column]);
-    return picked;
-  }
-
   bool share_vertices(std::span<const FacesOfMaterial> groups) const {
     return std::all_of(groups.begin(), groups.end(), [&](const FacesOfMaterial& group) {
       const SourcePrimitive& first = source_.primitives[groups[0].material];
@@ -107,7 +101,7 @@ class GeometryWriter {
     std::map<Index, PrimitiveGeometry> geometry;
     if (level_.mesh->face_count() == 0) return geometry;
     const SourcePrimitive& primitive = source_.primitives[level_.mesh->material_of(0)];
-    const Mesh ordered = in_hardware_order(with_attributes(*level_.mesh, pick(primitive)));
+    const Mesh ordered = in_hardware_order(with_attributes(*level_.mesh, attributes_of(level_, primitive)));
     count(ordered.face_count(), ordered.wedge_count());
     const PrimitiveGeometry shared = write_vertices(primitive, ordered);
     for (const FacesOfMaterial& group : split_by_material(ordered)) {
@@ -118,7 +112,7 @@ class GeometryWriter {
   }
 
   PrimitiveGeometry write_plain(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
-    const Mesh mesh = in_hardware_order(submesh(*level_.mesh, group.corner_wedge, pick(primitive)));
+    const Mesh mesh = in_hardware_order(submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive)));
     count(mesh.face_count(), mesh.wedge_count());
     PrimitiveGeometry geometry = write_vertices(primitive, mesh);
     geometry.indices = add_indices(builder_, mesh.corner_wedge, mesh.wedge_count());
@@ -212,7 +206,7 @@ class GeometryWriter {
 
   /// Accessors describe what the encoded bytes decode to, which Draco decides: it may split points, and it moves them.
   PrimitiveGeometry write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
-    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, pick(primitive));
+    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive));
     const DracoInput input = draco_input(primitive, mesh);
     const auto output = primitive.target_count > 0 ? encode_in_order(input) : encode_smallest(input);
     if (!output) return write_uncompressed(primitive, group, output.error().message);
@@ -333,6 +327,12 @@ Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source) {
       return fail(ErrorCode::InvalidArgument, text("mesh ", source.mesh, ": a level has faces of primitive ",
                                                    mesh.material_of(face), ", which is none of triangles"));
   return level;
+}
+
+std::vector<const Attribute*> attributes_of(const LevelGeometry& level, const SourcePrimitive& primitive) {
+  std::vector<const Attribute*> attributes;
+  for (const std::size_t column : primitive.columns) attributes.push_back(level.columns[column]);
+  return attributes;
 }
 
 Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, const MeshSource& source,

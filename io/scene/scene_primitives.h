@@ -27,6 +27,9 @@ struct LevelGeometry {
 /// primitives of the source.
 Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source);
 
+/// Returns the attributes that a primitive has in a level, in the order of its columns.
+std::vector<const Attribute*> attributes_of(const LevelGeometry& level, const SourcePrimitive& primitive);
+
 /// The primitives of a level in the document, and what a client will get out of them.
 struct WrittenLevel {
   Json primitives = Json::array();   ///< kept ones included; empty for a level that shows nothing

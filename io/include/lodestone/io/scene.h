@@ -129,4 +129,8 @@ Result<EncodedAsset> encode_scene(const Scene& scene, std::span<const LeveledMes
 Result<EncodedAsset> encode_scene_level(const Scene& scene, std::span<const LeveledMesh> meshes, std::size_t level,
                                         const AssetOptions& options);
 
+/// Returns a level of the whole scene as one mesh: its meshes where its nodes show them at rest, as `read_mesh` reads a
+/// file of that level. Pre: as `encode_scene_level`. Errors: the same, and LimitExceeded.
+Result<Mesh> level_surface(const Scene& scene, std::span<const LeveledMesh> meshes, std::size_t level);
+
 }  // namespace lodestone
