@@ -53,13 +53,14 @@ void check_levels(const std::filesystem::path& path) {
   options.targets = ratio_targets(0.3, 2);
   options.placement = Placement::Subset;
   options.keep_levels = true;
+  options.storage.draco = false;  // what Draco does to normals, a second file would mend
   const BuildResult built = build_asset(scene, options).value();
   REQUIRE(built.decoded.size() == scene.meshes().size());
   for (std::size_t level = 0; level < built.levels.size(); ++level) {
     INFO("level " << level);
     const Mesh surface = level_surface(scene, built.decoded, level).value();
     CHECK(surface.face_count() > 0);
-    CHECK(faces_of(surface) == faces_of(surface_in_file(scene, built.decoded, level)));
+    CHECK((faces_of(surface) == faces_of(surface_in_file(scene, built.decoded, level))));
   }
 }
 
@@ -69,7 +70,7 @@ TEST_CASE("a level as one mesh has the faces that a file of the level has: the d
 
 TEST_CASE("a level as one mesh has the faces that a file of the level has: skins, targets, materials, instances") {
   LODESTONE_SKIP_WITHOUT_MODELS();
-  for (const char* name : {"gltf/cakeBirthday.glb", "gltf/Lantern/Lantern.gltf", "gltf/MultiUVTest/MultiUVTest.gltf",
+  for (const char* name : {"gltf/cakeBirthday.glb", "gltf/Lantern/Lantern_nobasecolor.gltf", "gltf/MultiUVTest/MultiUVTest.gltf",
                            "gltf/VertexColorTest/VertexColorTest.gltf", "gltf/chr_knight.glb",
                            "skin-morph/RobotExpressive.glb", "skin-morph/AnimatedMorphCube/AnimatedMorphCube.gltf",
                            "skin-morph/MorphStressTest.gltf", "field/coincident-skinned.glb",
