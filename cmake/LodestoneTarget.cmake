@@ -13,14 +13,18 @@ function(lodestone_settings target)
   endif()
 endfunction()
 
-# lodestone_module(core SOURCES src/a.cpp … DEPENDS lodestone::… PRIVATE_DEPENDS …): a library of its own. Its public headers
-# lie in include/ of the folder, those for the folder alone are named from it: "distance/triangle.h".
+# lodestone_module(core SOURCES src/a.cpp … DEPENDS lodestone::… PRIVATE_DEPENDS …): a library of its own, shared where
+# BUILD_SHARED_LIBS says so. Its public headers lie in include/ of the folder, those for the folder alone are named from it:
+# "distance/triangle.h".
 function(lodestone_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   set(target lodestone_${name})
-  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(${target} ${ARG_SOURCES})
   add_library(lodestone::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  # Before 1.0, a minor version may change the interface, and so the name of the shared library.
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${target}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

@@ -21,6 +21,7 @@ struct TriangleSoup {
 /// At an edge of more faces than these nobody drew sheets: all are cut apart.
 inline constexpr std::size_t kMostFacesAtEdge = 32;
 
+/// What `assemble` may do beyond the least.
 struct AssemblyOptions {
   /// Whether faces may be turned so that neighbours wind alike. What cannot be seen from behind then looks another way:
   /// for files whose winding means nothing.
@@ -41,6 +42,7 @@ struct AssemblyReport {
 /// Adds up what became of several meshes.
 AssemblyReport operator+(const AssemblyReport& a, const AssemblyReport& b);
 
+/// A manifold mesh, and what had to be changed for it.
 struct AssembledMesh {
   Mesh mesh;
   AssemblyReport report;

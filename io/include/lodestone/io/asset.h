@@ -30,6 +30,7 @@ struct PositionGrid {
   float step = 0;  ///< > 0; no position lies farther than 2²⁹ steps from the origin
 };
 
+/// How a file stores its geometry.
 struct AssetOptions {
   bool draco = true;
   /// 1 to 30, one grid for all levels, and all meshes of a scale. Unset: 14, or what the finest parts of the shape and
@@ -52,6 +53,7 @@ struct AssetOptions {
 
 /// What was written, for reports.
 struct AssetLayout {
+  /// A level in the file.
   struct Level {
     std::uint64_t byte_offset = 0;     ///< in the binary chunk: of what only this level and finer ones need
     std::uint64_t byte_length = 0;     ///< of the same
@@ -73,6 +75,7 @@ struct AssetFile {
   std::vector<std::byte> bytes;
 };
 
+/// The bytes of one asset, and where its parts lie in them.
 struct EncodedAsset {
   std::vector<std::byte> glb;     ///< or the .gltf, where the options name one
   std::vector<AssetFile> beside;  ///< of a .gltf
@@ -81,6 +84,7 @@ struct EncodedAsset {
 
 /// A multi-LOD file as read back, its scene flattened into world space.
 struct Asset {
+  /// A level of the whole scene.
   struct Level {
     Mesh mesh;                       ///< decoded from Draco or plain accessors, assembled: clean and without doubles
     std::uint64_t face_count = 0;    ///< drawn, as stored
@@ -93,6 +97,7 @@ struct Asset {
     double screen_coverage = 0;      ///< of the screen's height, the largest
     bool draco = false;
   };
+  /// The removal stream of one mesh.
   struct Stream {
     std::string mesh;  ///< the name of its mesh
     std::vector<std::byte> bytes;

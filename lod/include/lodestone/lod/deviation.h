@@ -27,6 +27,7 @@ struct Deviation {
   }
 };
 
+/// How closely to measure.
 struct DeviationOptions {
   std::size_t sample_count = 200'000;  ///< about as many are taken for mean and rms, each way
   double relative_tolerance = 0.001;  ///< maximum_bound ≤ maximum·(1 + this) + absolute_tolerance, if the budget lasts

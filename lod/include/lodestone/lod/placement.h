@@ -8,6 +8,7 @@
 
 namespace lodestone {
 
+/// How much to fit, and what stays.
 struct PlacementOptions {
   int iterations = 8;                 ///< of fitting, each moves all vertices; up to six times as many of small levels
   std::size_t samples_per_face = 60;  ///< at most, of the level's faces: where the original has more, some are left out

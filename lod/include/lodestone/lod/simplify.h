@@ -28,6 +28,7 @@ struct BlockedCounts {
 /// Adds up what kept the vertices of several meshes.
 BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b);
 
+/// A progressive mesh, and why it goes no further.
 struct SimplifyResult {
   ProgressiveMesh mesh;
   StopReason stop_reason = StopReason::Stuck;

@@ -47,6 +47,7 @@ struct AttributeWeights {
 /// A vertex of at least this importance stays.
 inline constexpr float kLockingImportance = 1000;
 
+/// What a removal is charged for, what is kept, and where to stop.
 struct SimplifyOptions {
   Metric metric = Metric::Hybrid;
   Normalisation normalisation = Normalisation::Integral;

@@ -16,6 +16,7 @@ class SurfaceIndex {
   SurfaceIndex(SurfaceIndex&&) noexcept;
   SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
 
+  /// What a search found, and what it cost.
   struct Hit {
     double distance = 0;    ///< mesh units; infinity where the mesh has no faces or all lie farther than the limit
     Vec3 point;             ///< the nearest point of the surface

@@ -53,6 +53,7 @@ struct BuildResult {
     double deviation_beyond = 0;  ///< as above
     std::size_t level = 0;        ///< the one it would repeat
   };
+  /// A removal stream, or all of a scene together.
   struct Stream {
     std::uint64_t bytes = 0;  ///< 0 where the file has none
     std::size_t record_count = 0;
@@ -63,6 +64,7 @@ struct BuildResult {
   };
   /// One mesh of the scene; lengths in mesh units.
   struct MeshPart {
+    /// One level of it.
     struct Level {
       std::size_t face_count = 0;
       std::size_t vertex_count = 0;
@@ -77,6 +79,7 @@ struct BuildResult {
     Stream stream;
     std::vector<Level> levels;
   };
+  /// Wall clock of the stages, milliseconds.
   struct Timings {
     double simplify = 0;
     double levels = 0;

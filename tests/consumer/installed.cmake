@@ -1,0 +1,7 @@
+# The package as this build installs it, by find_package and by pkg-config. Takes BUILD_DIR, too, and SANITIZE: flags.
+
+include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
+run_step(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
+build_programs(build -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
+run_programs(build)
+run_with_pkg_config()
