@@ -18,6 +18,11 @@
 #include "fans.h"
 #include "winding.h"
 
+// From triangles to a manifold mesh: points at one position become one vertex, by hashing their coordinates, with one
+// wedge for each set of attributes; then faces are wound alike (winding.cpp) and what is not manifold is cut and
+// stitched (fans.cpp). Positions are compared exactly, never within a distance: a tolerance would join what the file
+// keeps apart.
+
 namespace lodestone {
 namespace {
 

@@ -4,6 +4,9 @@
 #include <cassert>
 #include <vector>
 
+// All triangulations of small convex polygons, by the recursion that counts them (Segner, 1758; the Catalan numbers):
+// the triangle at one edge splits the rest in two. A heptagon, the largest that is tabulated, has 42: all can be tried.
+
 namespace lodestone {
 namespace {
 

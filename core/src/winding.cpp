@@ -16,11 +16,11 @@
 namespace lodestone::detail {
 namespace {
 
-// Of a patch's faces, so many decide alone which side is its front. Fewer may be chance, or sides of a solid that were
+// Of a region's faces, so many decide alone which side is its front. Fewer may be chance, or sides of a solid that were
 // each right in themselves.
 constexpr double kClearMajority = 0.9;
 
-// A patch has an outside where it encloses more than this share of its area to the power 1.5 (a ball: 0.094).
+// A region has an outside where it encloses more than this share of its area to the power 1.5 (a ball: 0.094).
 constexpr double kClosedVolume = 1e-6;  // rounding
 constexpr double kOpenVolume = 0.01;    // hills
 
@@ -51,7 +51,7 @@ class WindingFinder {
   std::vector<Index> run();
 
  private:
-  enum class State : std::uint8_t { Unseen, AsFirst, Turned };  // beside the patch's first face
+  enum class State : std::uint8_t { Unseen, AsFirst, Turned };  // beside the region's first face
 
   void join(const HalfEdge& a, const HalfEdge& b, const std::vector<bool>& crowded);
   bool wind_alike(Index corner) const { return mesh_.corner_vertex(corner) != mesh_.corner_vertex(across_[corner]); }
@@ -111,7 +111,7 @@ std::vector<Index> WindingFinder::run() {
   return turned;
 }
 
-/// Collects a patch, what winds alike at a time.
+/// Collects a region, what winds alike at a time.
 void WindingFinder::gather(Index first) {
   patch_.clear();
   queue_.assign(1, {first, State::AsFirst});
@@ -141,7 +141,7 @@ void WindingFinder::gather_alike(Index face, State state) {
     }
 }
 
-/// Whether the patch has no border, once it winds as it will.
+/// Whether the region has no border, once it winds as it will.
 bool WindingFinder::is_closed() const {
   return std::all_of(patch_.begin(), patch_.end(), [&](Index face) {
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
@@ -153,7 +153,7 @@ bool WindingFinder::is_closed() const {
   });
 }
 
-/// The volume under the patch, as its first face winds, about the middle of its corners, over its area to the
+/// The volume under the region, as its first face winds, about the middle of its corners, over its area to the
 /// power 1.5.
 double WindingFinder::volume_share() const {
   Vec3 middle;

@@ -11,6 +11,10 @@
 #include "base/bytes.h"
 #include "stream/stream_layout.h"
 
+// Columns before an entropy coder, as column stores keep them (D. J. Abadi, S. R. Madden, M. Ferreira: Integrating
+// compression and execution in column-oriented database systems, SIGMOD 2006): values of one kind lie together, split
+// into byte planes, and each plane is a run, a zstd frame or stored, whichever is smallest.
+
 namespace lodestone::detail {
 namespace {
 

@@ -10,6 +10,12 @@
 
 #include "base/bytes.h"
 
+// What is left of a record once it is predicted. A vertex is expected in the middle of the polygon of its hole, as in
+// P. Alliez, M. Desbrun: Progressive compression for lossless transmission of triangle meshes (SIGGRAPH 2001);
+// residuals are differences of the bits of floats in their order, so that they are exact, as in M. Isenburg, P.
+// Lindstrom, J. Snoeyink: Lossless compression of predicted floating-point geometry (Computer-Aided Design 37, 2005).
+// Nothing is quantised.
+
 namespace lodestone::detail {
 namespace {
 

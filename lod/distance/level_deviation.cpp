@@ -18,8 +18,8 @@
 namespace lodestone {
 namespace {
 
-using detail::Anchor;
 using detail::Goal;
+using detail::KnownDistance;
 using detail::PatchBound;
 using detail::PositionIndex;
 using detail::SupremumSearch;
@@ -56,11 +56,11 @@ struct LevelDeviation::Impl {
   Deviation measure(const Mesh& level, double moved, double enough);
   void forget();
   SurfaceBounds inherit(const Mesh& level, double moved);
-  void carry_anchors(const std::vector<Index>& face_now, double moved);
+  void carry_nearest(const std::vector<Index>& face_now, double moved);
   void carry_bounds(const std::vector<Index>& face_now, double moved);
-  void anchor_common_vertices(const Mesh& level, const std::vector<Index>& names, SurfaceBounds& backward);
+  void place_common_vertices(const Mesh& level, const std::vector<Index>& names, SurfaceBounds& backward);
   void bound_new_faces(const Mesh& level, const Goal& goal, SurfaceBounds& backward);
-  void anchor_at(Index vertex, const Triangle& triangle, Index face);
+  void place_at(Index vertex, const Triangle& triangle, Index face);
   void start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const;
 
   const Mesh& original;
@@ -118,24 +118,24 @@ SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
     }
     same_face[f] = original_faces.find(name);
   }
-  carry_anchors(face_now, moved);
+  carry_nearest(face_now, moved);
   carry_bounds(face_now, moved);
   for (Index f = 0; f < level.face_count(); ++f) {
     if (same_face[f] == kNoIndex) continue;
     backward.faces[f] = 0;
     forward.lower(same_face[f], 0, std::array{f});
   }
-  anchor_common_vertices(level, vertex_names, backward);
+  place_common_vertices(level, vertex_names, backward);
   level_faces = std::move(faces_now);
   if (farthest_face != kNoIndex) farthest_face = face_now[farthest_face];
   return backward;
 }
 
-void LevelDeviation::Impl::carry_anchors(const std::vector<Index>& face_now, double moved) {
-  for (Anchor& anchor : forward.vertices) {
-    anchor.exact = false;
-    if (anchor.face != kNoIndex) anchor.face = face_now[anchor.face];
-    if (anchor.face == kNoIndex) anchor.distance += moved;
+void LevelDeviation::Impl::carry_nearest(const std::vector<Index>& face_now, double moved) {
+  for (KnownDistance& known : forward.vertices) {
+    known.exact = false;
+    if (known.face != kNoIndex) known.face = face_now[known.face];
+    if (known.face == kNoIndex) known.distance += moved;
   }
 }
 
@@ -152,7 +152,7 @@ void LevelDeviation::Impl::carry_bounds(const std::vector<Index>& face_now, doub
 }
 
 /// Where the level kept a vertex, the surfaces meet.
-void LevelDeviation::Impl::anchor_common_vertices(const Mesh& level, const std::vector<Index>& vertex_names,
+void LevelDeviation::Impl::place_common_vertices(const Mesh& level, const std::vector<Index>& vertex_names,
                                                   SurfaceBounds& backward) {
   for (Index corner = 0; corner < level.corner_wedge.size(); ++corner) {
     const Index v = level.corner_vertex(corner);
@@ -177,17 +177,17 @@ void LevelDeviation::Impl::bound_new_faces(const Mesh& level, const Goal& goal, 
     for (const Index g : patch.patch()) {
       for (Index corner = 3 * g; corner < 3 * g + 3; ++corner) {
         const Index v = original.corner_vertex(corner);
-        if (lost[v] && forward.vertices[v].face != f) anchor_at(v, triangle, f);
+        if (lost[v] && forward.vertices[v].face != f) place_at(v, triangle, f);
       }
     }
   }
 }
 
-void LevelDeviation::Impl::anchor_at(Index vertex, const Triangle& triangle, Index face) {
-  Anchor& anchor = forward.vertices[vertex];
+void LevelDeviation::Impl::place_at(Index vertex, const Triangle& triangle, Index face) {
+  KnownDistance& known = forward.vertices[vertex];
   const Vec3 p(original.positions[vertex]);
   const double distance = length(p - detail::nearest_on_triangle(p, triangle));
-  if (anchor.face == kNoIndex || distance < anchor.distance) anchor = {distance, face, false};
+  if (known.face == kNoIndex || distance < known.distance) known = {distance, face, false};
 }
 
 /// Raises the goal at once to where the last level's maximum suggests.

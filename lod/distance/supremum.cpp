@@ -3,9 +3,9 @@
 // Transactions on Graphics 28(3), 2009, and of M. Guthe, P. Borodin, R. Klein, "Fast and accurate Hausdorff distance
 // calculation between meshes", Journal of WSCG 13(2), 2005.
 //
-// The bound of a piece rests on one fact: the distance to a *convex* set is a convex function, so that its largest
-// value over a piece is at a corner. Any single face therefore bounds the whole piece. Where no single face will do,
-// the piece is cut in two, each half bounded by a face of its own; the cut goes where the two distances agree, which on
+// The bound of a part rests on one fact: the distance to a *convex* set is a convex function, so that its largest
+// value over a part is at a corner. Any single face therefore bounds the whole part. Where no single face will do,
+// the part is cut in two, each half bounded by a face of its own; the cut goes where the two distances agree, which on
 // a plane is their common edge and between two planes their bisector.
 
 #include "distance/supremum.h"
@@ -20,7 +20,7 @@ namespace {
 /// Covers rounding: far above that of a distance, far below any tolerance.
 constexpr double kRoundingSlack = 1 + 1e-12;
 
-using Corners = std::array<PieceCorner, 3>;
+using Corners = std::array<PartCorner, 3>;
 using Distances = std::array<double, 3>;  // From the three corners to one face.
 
 double largest(const Distances& d) { return std::max({d[0], d[1], d[2]}); }
@@ -53,7 +53,7 @@ double zero_between(double from, double towards) {
   return range != 0 ? std::clamp(from / range, 0.0, 1.0) : 0.5;
 }
 
-/// An upper bound of the distances from a piece to a surface; every face tried can only lower it.
+/// An upper bound of the distances from a part to a surface; every face tried can only lower it.
 class PieceBound {
  public:
   PieceBound(const Corners& corners, const SurfaceIndex& to, double target)
@@ -62,7 +62,7 @@ class PieceBound {
   double value() const { return value_; }
   bool met() const { return value_ <= target_; }
 
-  /// Tries one more face: for the whole piece, and for a part of it beside each face tried before.
+  /// Tries one more face: for the whole part, and for a part of it beside each face tried before.
   void try_face(Index face) {
     if (face == kNoIndex || met()) return;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -88,7 +88,7 @@ class PieceBound {
     return d;
   }
 
-  /// Cuts the piece along the line where its distances to two faces seem to agree.
+  /// Cuts the part along the line where its distances to two faces seem to agree.
   void try_cut(const Candidate& g, const Candidate& h) {
     double bound = 0;
     for (std::size_t i = 0; i < 3; ++i) bound = std::max(bound, std::min(g.distances[i], h.distances[i]));
@@ -154,7 +154,7 @@ void SupremumSearch::visit_face(Index face, Goal& goal) {
 
 double SupremumSearch::bound_by_corners(const Corners& corners, const Goal& goal) const {
   PieceBound bound(corners, to_, goal.threshold());
-  for (const PieceCorner& corner : corners) bound.try_face(corner.face);
+  for (const PartCorner& corner : corners) bound.try_face(corner.face);
   return bound.value();
 }
 
@@ -169,20 +169,20 @@ bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
   Index vertex = kNoIndex;
   for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
     const Index v = from_.corner_vertex(corner);
-    const Anchor& anchor = bounds_.vertices[v];
-    if (anchor.face != kNoIndex) hint = anchor.face;
-    if (anchor.exact) continue;
-    if (vertex == kNoIndex || anchor.face == kNoIndex) vertex = v;
+    const KnownDistance& known = bounds_.vertices[v];
+    if (known.face != kNoIndex) hint = known.face;
+    if (known.exact) continue;
+    if (vertex == kNoIndex || known.face == kNoIndex) vertex = v;
   }
   if (vertex == kNoIndex) return false;
-  const PieceCorner nearest = query(Vec3(from_.positions[vertex]), hint, face, goal);
+  const PartCorner nearest = query(Vec3(from_.positions[vertex]), hint, face, goal);
   bounds_.vertices[vertex] = {nearest.distance, nearest.face, true};
   return true;
 }
 
-PieceCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
+PartCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
   const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
-  const PieceCorner corner{point, hit.distance, hit.face};
+  const PartCorner corner{point, hit.distance, hit.face};
   if (hit.distance > largest_distance_) {
     assume(from_face, hit.distance, goal);
     farthest_point_ = point;
@@ -207,8 +207,8 @@ Corners SupremumSearch::corners_of(Index face) const {
   Corners corners;
   for (Index i = 0; i < 3; ++i) {
     const Index vertex = from_.corner_vertex(3 * face + i);
-    const Anchor& anchor = bounds_.vertices[vertex];
-    corners[i] = {Vec3(from_.positions[vertex]), anchor.distance, anchor.face};
+    const KnownDistance& known = bounds_.vertices[vertex];
+    corners[i] = {Vec3(from_.positions[vertex]), known.distance, known.face};
   }
   return corners;
 }
@@ -219,12 +219,12 @@ void SupremumSearch::split_faces(Goal& goal, std::size_t budget) {
     if (is_open(face, goal)) add_face(face, goal);
   }
   for (; budget > 0 && !heap_.empty() && heap_.front().bound > goal.threshold(); --budget) split(pop(), goal);
-  for (const Piece& piece : heap_) bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
+  for (const Part& part : heap_) bounds_.faces[part.face] = std::max(bounds_.faces[part.face], part.bound);
   heap_.clear();
   corners_.clear();
 }
 
-/// Turns a face into a piece; from here on the face's bound is the largest of its finished pieces.
+/// Turns a face into a part; from here on the face's bound is the largest of its finished parts.
 void SupremumSearch::add_face(Index face, Goal& goal) {
   while (query_one_vertex(face, goal)) {
   }
@@ -234,61 +234,61 @@ void SupremumSearch::add_face(Index face, Goal& goal) {
   const double bound = bounds_.faces[face];
   bounds_.faces[face] = 0;
   if (!bounds_.witnesses.empty()) bounds_.witnesses[face] = {};
-  add_piece({bound, {}, face}, {first, first + 1, first + 2}, goal);
+  add_part({bound, {}, face}, {first, first + 1, first + 2}, goal);
 }
 
-void SupremumSearch::add_piece(const Piece& parent, const std::array<Index, 3>& corners, Goal& goal) {
+void SupremumSearch::add_part(const Part& parent, const std::array<Index, 3>& corners, Goal& goal) {
   const Corners c = {corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]};
   double bound = std::min(parent.bound, bound_by_corners(c, goal));
   if (bound > goal.threshold()) bound = std::min(bound, bound_by_patch(c, goal));
   if (bound > goal.threshold()) bound = std::min(bound, bound_by_centre(c, parent.face, goal));
-  const Piece piece{bound, corners, parent.face};
-  if (piece.bound > goal.threshold()) {
-    push(piece);
+  const Part part{bound, corners, parent.face};
+  if (part.bound > goal.threshold()) {
+    push(part);
   } else {
-    bounds_.faces[piece.face] = std::max(bounds_.faces[piece.face], piece.bound);
+    bounds_.faces[part.face] = std::max(bounds_.faces[part.face], part.bound);
   }
 }
 
-/// At the corners several faces may be equally near, and the one that covers the piece need not be the one found: the
+/// At the corners several faces may be equally near, and the one that covers the part need not be the one found: the
 /// face nearest to the centre is tried as well.
 double SupremumSearch::bound_by_centre(const Corners& c, Index from_face, Goal& goal) {
   const Vec3 centre = (c[0].point + c[1].point + c[2].point) * (1.0 / 3.0);
   const Index face = query(centre, c[0].face, from_face, goal).face;
   PieceBound bound(c, to_, goal.threshold());
   bound.try_face(face);
-  for (const PieceCorner& corner : c) bound.try_face(corner.face);
+  for (const PartCorner& corner : c) bound.try_face(corner.face);
   return bound.value();
 }
 
-/// Halves a piece across its longest edge.
-void SupremumSearch::split(const Piece& piece, Goal& goal) {
+/// Halves a part across its longest edge.
+void SupremumSearch::split(const Part& part, Goal& goal) {
   std::size_t longest = 0;
   double longest_squared = -1;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 edge = corners_[piece.corners[(i + 1) % 3]].point - corners_[piece.corners[i]].point;
+    const Vec3 edge = corners_[part.corners[(i + 1) % 3]].point - corners_[part.corners[i]].point;
     if (squared_length(edge) > longest_squared) longest = i, longest_squared = squared_length(edge);
   }
-  const Index a = piece.corners[longest];
-  const Index b = piece.corners[(longest + 1) % 3];
-  const Index c = piece.corners[(longest + 2) % 3];
+  const Index a = part.corners[longest];
+  const Index b = part.corners[(longest + 1) % 3];
+  const Index c = part.corners[(longest + 2) % 3];
   const Index middle = static_cast<Index>(corners_.size());
   const Vec3 point = (corners_[a].point + corners_[b].point) * 0.5;
-  corners_.push_back(query(point, corners_[a].face, piece.face, goal));
-  add_piece(piece, {a, middle, c}, goal);
-  add_piece(piece, {middle, b, c}, goal);
+  corners_.push_back(query(point, corners_[a].face, part.face, goal));
+  add_part(part, {a, middle, c}, goal);
+  add_part(part, {middle, b, c}, goal);
 }
 
-void SupremumSearch::push(const Piece& piece) {
-  heap_.push_back(piece);
-  std::push_heap(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.bound < b.bound; });
+void SupremumSearch::push(const Part& part) {
+  heap_.push_back(part);
+  std::push_heap(heap_.begin(), heap_.end(), [](const Part& a, const Part& b) { return a.bound < b.bound; });
 }
 
-SupremumSearch::Piece SupremumSearch::pop() {
-  std::pop_heap(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.bound < b.bound; });
-  const Piece piece = heap_.back();
+SupremumSearch::Part SupremumSearch::pop() {
+  std::pop_heap(heap_.begin(), heap_.end(), [](const Part& a, const Part& b) { return a.bound < b.bound; });
+  const Part part = heap_.back();
   heap_.pop_back();
-  return piece;
+  return part;
 }
 
 Goal goal_of(const DeviationOptions& options, double diagonal, double enough) {

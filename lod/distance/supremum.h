@@ -33,7 +33,7 @@ struct Goal {
 Goal goal_of(const DeviationOptions& options, double diagonal, double enough);
 
 /// A point of one surface and what is known of its distance to the other.
-struct Anchor {
+struct KnownDistance {
   double distance = kUnbounded;  ///< an upper bound; to `face` precisely, where there is one
   Index face = kNoIndex;         ///< a face of the other surface at that distance
   bool exact = false;            ///< that face is the nearest
@@ -48,9 +48,9 @@ struct Witnesses {
 
 /// What is known of a surface's distances to another one. It may be kept, while it stays true, between searches.
 struct SurfaceBounds {
-  std::vector<Anchor> vertices;      ///< one per vertex
-  std::vector<double> faces;         ///< one per face: an upper bound of its points' distances
-  std::vector<Witnesses> witnesses;  ///< of `faces`; may be empty: not wanted
+  std::vector<KnownDistance> vertices;  ///< one per vertex
+  std::vector<double> faces;            ///< one per face: an upper bound of its points' distances
+  std::vector<Witnesses> witnesses;     ///< of `faces`; may be empty: not wanted
 
   SurfaceBounds() = default;
   SurfaceBounds(const Mesh& mesh, bool wants_witnesses)
@@ -62,11 +62,11 @@ struct SurfaceBounds {
   void lower(Index face, double bound, std::span<const Index> found);
 };
 
-/// A corner of a piece of a triangle.
-struct PieceCorner {
+/// A corner of a part of a triangle.
+struct PartCorner {
   Vec3 point;
-  double distance = kUnbounded;  ///< as in Anchor
-  Index face = kNoIndex;         ///< as in Anchor
+  double distance = kUnbounded;  ///< as in KnownDistance
+  Index face = kNoIndex;         ///< as in KnownDistance
 };
 
 /// The search for the largest distance from the faces of a mesh to a surface: branch and bound, best first.
@@ -77,7 +77,7 @@ class SupremumSearch {
 
   /// Lowers the faces' bounds as far as the goal asks and queries at vertices can.
   void visit_vertices(Goal& goal);
-  /// Splits faces until all bounds meet the goal or `budget` pieces were halved.
+  /// Splits faces until all bounds meet the goal or `budget` parts were halved.
   void split_faces(Goal& goal, std::size_t budget);
 
   /// Starts from a point of the mesh that is likely far away.
@@ -93,13 +93,13 @@ class SupremumSearch {
   OneSidedDeviation result() const;
 
  private:
-  struct Piece {
+  struct Part {
     double bound;
     std::array<Index, 3> corners;  // Into corners_.
     Index face;
   };
 
-  using Corners = std::array<PieceCorner, 3>;
+  using Corners = std::array<PartCorner, 3>;
 
   bool is_open(Index face, const Goal& goal) const { return bounds_.faces[face] > goal.threshold(); }
   Corners corners_of(Index face) const;
@@ -108,12 +108,12 @@ class SupremumSearch {
   double bound_by_centre(const Corners& corners, Index from_face, Goal& goal);
   void visit_face(Index face, Goal& goal);
   bool query_one_vertex(Index face, Goal& goal);
-  PieceCorner query(const Vec3& point, Index hint, Index from_face, Goal& goal);
+  PartCorner query(const Vec3& point, Index hint, Index from_face, Goal& goal);
   void add_face(Index face, Goal& goal);
-  void add_piece(const Piece& parent, const std::array<Index, 3>& corners, Goal& goal);
-  void split(const Piece& piece, Goal& goal);
-  void push(const Piece& piece);
-  Piece pop();
+  void add_part(const Part& parent, const std::array<Index, 3>& corners, Goal& goal);
+  void split(const Part& part, Goal& goal);
+  void push(const Part& part);
+  Part pop();
 
   const Mesh& from_;
   const SurfaceIndex& to_;
@@ -122,8 +122,8 @@ class SupremumSearch {
   double largest_distance_ = 0;
   Vec3 farthest_point_;
   Index farthest_face_ = kNoIndex;
-  std::vector<PieceCorner> corners_;
-  std::vector<Piece> heap_;
+  std::vector<PartCorner> corners_;
+  std::vector<Part> heap_;
 };
 
 /// Narrows the larger of two directions; the other one only as far as that needs.

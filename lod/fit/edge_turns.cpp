@@ -10,6 +10,10 @@
 
 #include "distance/triangle.h"
 
+// Edge swaps that lower the fit's energy, as in Hoppe, DeRose, Duchamp, McDonald, Stuetzle: Mesh optimization (SIGGRAPH
+// 1993). Departures: edges are tried once, in order, rather than at random; vertices stay where they are meanwhile; and
+// sheets that lie on one another turn together.
+
 namespace lodestone::detail {
 namespace {
 

@@ -6,6 +6,10 @@
 
 #include "progressive/canonical_face.h"
 
+// Progressive meshes as in Hoppe: Progressive meshes (SIGGRAPH 1996), with vertex removals in place of edge collapses:
+// a record names the polygon of the hole and its triangulation, so that either way it overwrites and appends a few
+// index slots.
+
 namespace lodestone {
 
 using detail::write_canonical;

@@ -22,7 +22,7 @@ Pieces::Pieces(const Mesh& mesh, const Connectivity& connectivity) : piece_(mesh
   for (const std::size_t faces : face_count_) left_ += faces > 0 ? 1 : 0;
 }
 
-double Pieces::loss(const Mesh& mesh, Index piece) const {
+double Pieces::charge(const Mesh& mesh, Index piece) const {
   const std::span<const Index> members = vertices(piece);
   Vec3 center;
   for (const Index v : members) center += Vec3(mesh.positions[v]);

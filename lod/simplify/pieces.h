@@ -28,10 +28,10 @@ class Pieces {
     --left_;
   }
 
-  /// What the loss of a piece is charged for, a length that compares with the distance sums of removals: all of the
+  /// What a piece that vanishes is charged for, a length that compares with the distance sums of removals: all of the
   /// points it stands for are lost, each as far as the piece is wide.
   /// Pre: it has lost no faces.
-  double loss(const Mesh& mesh, Index piece) const;
+  double charge(const Mesh& mesh, Index piece) const;
 
  private:
   std::vector<Index> piece_;  // by vertex

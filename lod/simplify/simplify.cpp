@@ -305,7 +305,7 @@ bool Simplifier::relax_angles(bool beyond_right_angles) {
   return true;
 }
 
-/// Works out what the loss of each piece costs: its width for every point it stands for, and the curvature that goes
+/// Works out what each piece costs that vanishes: its width for every point it stands for, and the curvature that goes
 /// with it.
 void Simplifier::price_pieces() {
   piece_moves_.assign(pieces_.count(), 1);
@@ -318,9 +318,9 @@ void Simplifier::price_pieces() {
       if (!options_.importance.empty()) importance = std::max(importance, options_.importance[v]);
       stays = stays || is_locked(v);
     }
-    const double loss = pieces_.loss(state_.mesh, piece);
+    const double charge = pieces_.charge(state_.mesh, piece);
     const bool is_hybrid = options_.metric == Metric::Hybrid;
-    double cost = is_hybrid ? hybrid_cost(loss, static_cast<double>(error)) : static_cast<double>(error);
+    double cost = is_hybrid ? hybrid_cost(charge, static_cast<double>(error)) : static_cast<double>(error);
     cost *= static_cast<double>(importance);
     stays = stays || error > options_.stop.max_curvature_error;
     piece_cost_.push_back(stays ? kIllegal : static_cast<float>(cost));

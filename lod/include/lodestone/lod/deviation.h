@@ -32,7 +32,8 @@ struct DeviationOptions {
   std::size_t sample_count = 200'000;  ///< about as many are taken for mean and rms, each way
   double relative_tolerance = 0.001;  ///< maximum_bound ≤ maximum·(1 + this) + absolute_tolerance, if the budget lasts
   double absolute_tolerance = 0;      ///< mesh units; 0: 1e-7 of the diagonal
-  std::size_t budget = 1'000'000;     ///< pieces to halve for narrowing the maximum, each way; about 100 bytes each
+  std::size_t budget =
+      1'000'000;  ///< parts of faces to halve for narrowing the maximum, each way; about 100 bytes each
 };
 
 /// Returns the k-th of a sequence of points that spreads evenly over a face.
