@@ -34,7 +34,7 @@ double cross2(const Vec2& a, const Vec2& b, const Vec2& c) {
 struct Overlay {
   SectorShape shape;
   Vec3 center;
-  Vec3 anchor;  // where the centre goes: itself, or its foot on the closing edge
+  Vec3 image;  // where the centre goes: itself, or its foot on the closing edge
   std::vector<PolygonTriangle> triangles;
   std::vector<Vec3> ring;
   std::vector<Vec2> plane_ring;
@@ -48,7 +48,7 @@ struct Overlay {
 Vec3 fine_normal(const Overlay& overlay) {
   Vec3 normal;
   for (std::size_t i = 0; i < overlay.face_count(); ++i)
-    normal += cross(overlay.ring[i] - overlay.anchor, overlay.ring[overlay.next(i)] - overlay.anchor);
+    normal += cross(overlay.ring[i] - overlay.image, overlay.ring[overlay.next(i)] - overlay.image);
   return normal;
 }
 
@@ -63,7 +63,7 @@ Overlay make_overlay(const Mesh& mesh, const SectorPatch& sector, const Vec3& ce
   Overlay overlay{sector.shape, center, center, sector.triangles, {}, {}, {}};
   for (const Index wedge : sector.polygon) overlay.ring.push_back(Vec3(mesh.positions[mesh.wedge_vertex[wedge]]));
   if (sector.shape == SectorShape::Open)
-    overlay.anchor = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
+    overlay.image = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
   return overlay;
 }
 
@@ -86,7 +86,7 @@ Overlay make_overlay(const Mesh& mesh, const RemovalRecord& record, const Vec3& 
       std::sort(c.begin(), c.end());
       overlay.triangles.push_back({c[0], c[1], c[2]});
     }
-  if (record.open_star) overlay.anchor = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
+  if (record.open_star) overlay.image = nearest_on_segment(center, overlay.ring.back(), overlay.ring.front());
   return overlay;
 }
 
@@ -98,7 +98,7 @@ void project(Overlay& overlay, const Vec3& direction) {
   const auto to_plane = [&](const Vec3& p) { return Vec2{dot(p - overlay.center, u), dot(p - overlay.center, w)}; };
   overlay.plane_ring.clear();
   for (const Vec3& p : overlay.ring) overlay.plane_ring.push_back(to_plane(p));
-  overlay.plane_center = to_plane(overlay.anchor);
+  overlay.plane_center = to_plane(overlay.image);
 }
 
 bool folds(const Overlay& overlay) {
@@ -109,9 +109,9 @@ bool folds(const Overlay& overlay) {
   });
 }
 
-/// The distance from the centre to the coarse surface's point over or under its anchor.
+/// The distance from the centre to the coarse surface's point over or under its image.
 double center_displacement(const Overlay& overlay) {
-  if (!(overlay.anchor == overlay.center)) return length(overlay.center - overlay.anchor);
+  if (!(overlay.image == overlay.center)) return length(overlay.center - overlay.image);
   double best_inside = -std::numeric_limits<double>::infinity();
   Vec3 target;
   for (const PolygonTriangle t : overlay.triangles) {
@@ -184,7 +184,7 @@ double overlay_bound(Overlay overlay) {
       if (!folds(overlay)) return overlay_displacement(overlay);
     }
     if (overlay.shape != SectorShape::Closed) break;
-    overlay.anchor = nearest_coarse_point(overlay);
+    overlay.image = nearest_coarse_point(overlay);
   }
   return std::numeric_limits<double>::infinity();
 }
