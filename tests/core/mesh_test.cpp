@@ -68,7 +68,8 @@ T stored_as(ComponentType type, bool normalized, double value) {
 /// All values of an integer type come back from their floats, but for the two that stand for −1.
 template <class T>
 void check_every_value(ComponentType type) {
-  for (int i = static_cast<int>(std::numeric_limits<T>::min()); i <= std::numeric_limits<T>::max(); ++i) {
+  const int lowest = std::numeric_limits<T>::is_signed ? -std::numeric_limits<T>::max() - 1 : 0;
+  for (int i = lowest; i <= std::numeric_limits<T>::max(); ++i) {
     const T value = static_cast<T>(i);
     const double plain = values_of<T>(type, false, {value})[0];
     const double unit = values_of<T>(type, true, {value})[0];
