@@ -36,4 +36,9 @@ Result<std::vector<std::byte>> nothing_beside(const std::filesystem::path& relat
   return fail(ErrorCode::Unreadable, text("'", relative, "' lies outside the bytes given"));
 }
 
+Error with_path(Error error, const std::filesystem::path& path) {
+  error.message = text('\'', path, "': ", error.message);
+  return error;
+}
+
 }  // namespace lodestone::detail

@@ -18,4 +18,7 @@ FileFetcher files_beside(const std::filesystem::path& path);
 /// Fetches nothing: for what is read from memory. Its error is Unreadable.
 Result<std::vector<std::byte>> nothing_beside(const std::filesystem::path& relative);
 
+/// Returns an error of a file's content with the file's name before its message.
+Error with_path(Error error, const std::filesystem::path& path);
+
 }  // namespace lodestone::detail

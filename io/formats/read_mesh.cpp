@@ -94,15 +94,11 @@ Result<MeshFile> detail::read_mesh_bytes(std::span<const std::byte> bytes, const
 Result<MeshFile> read_mesh(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
   auto file = detail::read_mesh_bytes(bytes, extension_of(path), files_beside(path));
-  if (!file) file.error().message = text('\'', path, "': ", file.error().message);
-  return file;
+  return std::move(file).map_error([&](Error error) { return with_path(std::move(error), path); });
 }
 
 Result<MeshFile> read_mesh_bytes(std::span<const std::byte> bytes, const std::string& extension) {
-  return detail::read_mesh_bytes(
-      bytes, extension, [](const std::filesystem::path& relative) -> Result<std::vector<std::byte>> {
-        return fail(ErrorCode::Unreadable, text("'", relative, "' lies outside the bytes given"));
-      });
+  return detail::read_mesh_bytes(bytes, extension, nothing_beside);
 }
 
 }  // namespace lodestone

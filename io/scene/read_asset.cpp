@@ -139,19 +139,12 @@ Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index,
 Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document) {
   std::vector<Asset::Stream> streams;
   for (std::size_t i = 0; i < document.count("meshes"); ++i) {
+    LODESTONE_TRY(std::vector<std::byte> stream, stored_stream(document, i));
+    if (stream.empty()) continue;
     LODESTONE_TRY(const Json* const mesh, document.element("meshes", "mesh", i));
-    const Json* extension = GltfDocument::extension(*mesh, kStreamExtension);
-    if (extension == nullptr) continue;
-    LODESTONE_TRY(const std::size_t view_index, size_member(*extension, "bufferView", kStreamExtension));
-    LODESTONE_TRY(const BufferView view, document.buffer_view(view_index));
-    streams.push_back({string_member(*mesh, "name"), {view.bytes.begin(), view.bytes.end()}});
+    streams.push_back({string_member(*mesh, "name"), std::move(stream)});
   }
   return streams;
-}
-
-Error with_path(Error error, const std::filesystem::path& path) {
-  error.message = text('\'', path, "': ", error.message);
-  return error;
 }
 
 Result<Asset> read_asset_of(std::span<const std::byte> bytes, const FileFetcher& fetch) {
@@ -170,16 +163,11 @@ Result<Asset> read_asset_of(std::span<const std::byte> bytes, const FileFetcher&
 
 }  // namespace
 
-Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) {
-  return read_asset_of(bytes, [](const std::filesystem::path& path) -> Result<std::vector<std::byte>> {
-    return fail(ErrorCode::Unsupported, text("'", path, "' is a file of its own, which bytes cannot reach"));
-  });
-}
+Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) { return read_asset_of(bytes, nothing_beside); }
 
 Result<Asset> read_asset(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  const auto fetch = [&](const std::filesystem::path& relative) { return read_file(path.parent_path() / relative); };
-  auto asset = read_asset_of(bytes, fetch);
+  auto asset = read_asset_of(bytes, files_beside(path));
   if (!asset) return tl::unexpected<Error>(with_path(std::move(asset).error(), path));
   LODESTONE_TRY(asset->total_bytes, loaded_bytes(path));
   return asset;

@@ -26,11 +26,6 @@ namespace {
 
 using namespace detail;
 
-Error with_path(Error error, const std::filesystem::path& path) {
-  error.message = text('\'', path, "': ", error.message);
-  return error;
-}
-
 Result<void> refuse_levels(const GltfDocument& document) {
   LODESTONE_TRY(const auto chains, lod_chains(document));
   if (chains.empty()) return {};
@@ -51,18 +46,9 @@ Result<std::map<std::size_t, std::vector<std::size_t>>> find_shown_meshes(const 
   return nodes_of;
 }
 
-Result<std::vector<std::byte>> read_stream(const GltfDocument& document, std::size_t mesh) {
-  LODESTONE_TRY(const Json* const json, document.element("meshes", "mesh", mesh));
-  const Json* extension = GltfDocument::extension(*json, kStreamExtension);
-  if (extension == nullptr) return std::vector<std::byte>{};
-  LODESTONE_TRY(const std::size_t view_index, size_member(*extension, "bufferView", kStreamExtension));
-  LODESTONE_TRY(const BufferView view, document.buffer_view(view_index));
-  return std::vector<std::byte>(view.bytes.begin(), view.bytes.end());
-}
-
 /// Reads a mesh's stream. What a grid left no area of the levels, the stream still has.
 Result<void> add_stream(const GltfDocument& document, std::size_t number, SceneMesh& mesh) {
-  LODESTONE_TRY(mesh.stream, read_stream(document, number));
+  LODESTONE_TRY(mesh.stream, stored_stream(document, number));
   if (mesh.stream.empty() || mesh.mesh.face_count() > 0) return {};
   LODESTONE_TRY(const ProgressiveMesh whole, decode_stream(mesh.stream));
   mesh.mesh = extract_level(whole, static_cast<Index>(whole.record_count()));

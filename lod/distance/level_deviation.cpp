@@ -153,7 +153,7 @@ void LevelDeviation::Impl::carry_bounds(const std::vector<Index>& face_now, doub
 
 /// Where the level kept a vertex, the surfaces meet.
 void LevelDeviation::Impl::place_common_vertices(const Mesh& level, const std::vector<Index>& vertex_names,
-                                                  SurfaceBounds& backward) {
+                                                 SurfaceBounds& backward) {
   for (Index corner = 0; corner < level.corner_wedge.size(); ++corner) {
     const Index v = level.corner_vertex(corner);
     const Index name = vertex_names[v];

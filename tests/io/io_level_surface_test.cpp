@@ -70,11 +70,12 @@ TEST_CASE("a level as one mesh has the faces that a file of the level has: the d
 
 TEST_CASE("a level as one mesh has the faces that a file of the level has: skins, targets, materials, instances") {
   LODESTONE_SKIP_WITHOUT_MODELS();
-  for (const char* name : {"gltf/cakeBirthday.glb", "gltf/Lantern/Lantern_nobasecolor.gltf", "gltf/MultiUVTest/MultiUVTest.gltf",
-                           "gltf/VertexColorTest/VertexColorTest.gltf", "gltf/chr_knight.glb",
-                           "skin-morph/RobotExpressive.glb", "skin-morph/AnimatedMorphCube/AnimatedMorphCube.gltf",
-                           "skin-morph/MorphStressTest.gltf", "field/coincident-skinned.glb",
-                           "field/vertex-colours.obj", "field/mesh_with_colors.off", "nasty/boxNotManifold.glb"})
+  for (const char* name :
+       {"gltf/cakeBirthday.glb", "gltf/Lantern/Lantern_nobasecolor.gltf", "gltf/MultiUVTest/MultiUVTest.gltf",
+        "gltf/VertexColorTest/VertexColorTest.gltf", "gltf/chr_knight.glb", "skin-morph/RobotExpressive.glb",
+        "skin-morph/AnimatedMorphCube/AnimatedMorphCube.gltf", "skin-morph/MorphStressTest.gltf",
+        "field/coincident-skinned.glb", "field/vertex-colours.obj", "field/mesh_with_colors.off",
+        "nasty/boxNotManifold.glb"})
     if (const auto path = model(name)) check_levels(*path);
 }
 

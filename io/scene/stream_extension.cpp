@@ -1,0 +1,16 @@
+#include "scene/stream_extension.h"
+
+#include <lodestone/core/detail/try.h>
+
+namespace lodestone::detail {
+
+Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh) {
+  LODESTONE_TRY(const Json* const json, document.element("meshes", "mesh", mesh));
+  const Json* extension = GltfDocument::extension(*json, kStreamExtension);
+  if (extension == nullptr) return std::vector<std::byte>{};
+  LODESTONE_TRY(const std::size_t view_index, size_member(*extension, "bufferView", kStreamExtension));
+  LODESTONE_TRY(const BufferView view, document.buffer_view(view_index));
+  return std::vector<std::byte>(view.bytes.begin(), view.bytes.end());
+}
+
+}  // namespace lodestone::detail
