@@ -51,7 +51,7 @@ bool is_known(const Triple& name) { return name[2] != kNoIndex; }
 }  // namespace
 
 struct LevelDeviation::Impl {
-  Impl(const Mesh& mesh, const DeviationOptions& options_);
+  Impl(const Mesh& mesh, const DeviationOptions& wanted);
 
   Deviation measure(const Mesh& level, double moved, double enough);
   void forget();
@@ -80,9 +80,9 @@ struct LevelDeviation::Impl {
   double farthest_distance = 0;      // Of farthest_face.
 };
 
-LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& options_)
+LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& wanted)
     : original(mesh),
-      options(options_),
+      options(wanted),
       diagonal(bounding_box(mesh).diagonal()),
       index(mesh),
       patch(mesh),
