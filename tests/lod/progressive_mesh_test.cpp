@@ -333,7 +333,7 @@ TEST_CASE("a number of faces leads to the finest whole position that has no more
 TEST_CASE("an error leads to the coarsest position within it, to the finest where none is") {
   for (const auto& [name, mesh] : streams()) {
     INFO(name);
-    const auto check = [&](const std::vector<float>& errors, auto position_for) {
+    const auto check = [&mesh = mesh](const std::vector<float>& errors, auto position_for) {
       const auto at_worst = static_cast<Index>(mesh.record_count());
       std::vector<double> limits = {-1, 0, 1e-6, 1e9};
       for (const float e : errors)

@@ -181,7 +181,7 @@ TEST_CASE("of very few faces nobody asks for none of them") {
       INFO(faces << " faces");
       const Build made = shop.build(scope);
       check_falling(made.report, 5);
-      CHECK(faces_of(made.report).front() == faces);
+      CHECK(faces_of(made.report).front() == static_cast<std::size_t>(faces));
       CHECK(faces_of(made.report).back() >= 1);
       CHECK_THAT(made.run.err, !contains("0 faces were asked for") && !contains("1, 1"));
       if (faces == 1) CHECK(made.run.err.empty());
