@@ -18,7 +18,6 @@
 namespace lodestone::test {
 namespace {
 
-using detail::Coding;
 using detail::Column;
 
 ProgressiveMesh simplified(const TriangleSoup& soup, bool vanish = false) {
@@ -264,7 +263,8 @@ std::vector<EditedFile> valid_edits() {
   };
 }
 
-std::vector<EditedFile> breaking_edits() {
+// One row for each file: a table, however long.
+std::vector<EditedFile> breaking_edits() {  // NOLINT(readability-function-size)
   using namespace detail;
   using Values = std::vector<std::uint32_t>;
   const float nan = std::numeric_limits<float>::quiet_NaN();
