@@ -389,13 +389,13 @@ TEST_CASE("no point of a level, and none of the full mesh, is farther from the o
   for (std::uint64_t seed = 0; tally.trials < count; ++seed) try_mesh(seed, tally);
   REQUIRE(tally.looseness.size() > count / 2);
   std::sort(tally.looseness.begin(), tally.looseness.end());
-  const double median = looseness_at(tally, 0.5), most = looseness_at(tally, 0.9);
+  const double median = looseness_at(tally, 0.5), most = looseness_at(tally, 0.8);
   if (wanted != nullptr)
-    std::printf("%zu trials, %zu violations; bound / measured: median %.3f, 90 %% below %.3f\n", tally.trials,
+    std::printf("%zu trials, %zu violations; bound / measured: median %.3f, 80 %% below %.3f\n", tally.trials,
                 tally.violations, median, most);
   // A bound that is many times too large could be trusted, but would be of no use.
   CHECK(median < 1.5);
-  CHECK(most < 7);
+  CHECK(most < 5);
 }
 
 }  // namespace lodestone::test
