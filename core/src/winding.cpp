@@ -65,7 +65,7 @@ class WindingFinder {
   std::vector<Index> across_;  // by corner: the same edge in the neighbour; kNoIndex where there is none
   std::vector<std::int8_t> sides_;
   std::vector<State> state_;
-  std::vector<Index> patch_;
+  std::vector<Index> region_;
   std::vector<std::pair<Index, State>> queue_;
 };
 
@@ -104,16 +104,16 @@ std::vector<Index> WindingFinder::run() {
     if (state_[face] != State::Unseen) continue;
     gather(face);
     const auto winds = [&](State state) { return [&, state](Index f) { return state_[f] == state; }; };
-    if (std::none_of(patch_.begin(), patch_.end(), winds(State::Turned))) continue;
+    if (std::none_of(region_.begin(), region_.end(), winds(State::Turned))) continue;
     const State back = first_is_front() ? State::Turned : State::AsFirst;
-    std::copy_if(patch_.begin(), patch_.end(), std::back_inserter(turned), winds(back));
+    std::copy_if(region_.begin(), region_.end(), std::back_inserter(turned), winds(back));
   }
   return turned;
 }
 
 /// Collects a region, what winds alike at a time.
 void WindingFinder::gather(Index first) {
-  patch_.clear();
+  region_.clear();
   queue_.assign(1, {first, State::AsFirst});
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     const auto [face, state] = queue_[i];
@@ -124,16 +124,16 @@ void WindingFinder::gather(Index first) {
 /// Collects what winds as `face` does and hangs together with it; queues the neighbours that wind the other way.
 void WindingFinder::gather_alike(Index face, State state) {
   const State other = state == State::Turned ? State::AsFirst : State::Turned;
-  std::size_t next = patch_.size();
-  patch_.push_back(face);
+  std::size_t next = region_.size();
+  region_.push_back(face);
   state_[face] = state;
-  for (; next < patch_.size(); ++next)
-    for (Index corner = 3 * patch_[next]; corner < 3 * patch_[next] + 3; ++corner) {
+  for (; next < region_.size(); ++next)
+    for (Index corner = 3 * region_[next]; corner < 3 * region_[next] + 3; ++corner) {
       if (across_[corner] == kNoIndex) continue;
       const Index neighbour = face_of_corner(across_[corner]);
       if (state_[neighbour] != State::Unseen) continue;
       if (wind_alike(corner)) {
-        patch_.push_back(neighbour);
+        region_.push_back(neighbour);
         state_[neighbour] = state;
       } else {
         queue_.emplace_back(neighbour, other);
@@ -143,7 +143,7 @@ void WindingFinder::gather_alike(Index face, State state) {
 
 /// Whether the region has no border, once it winds as it will.
 bool WindingFinder::is_closed() const {
-  return std::all_of(patch_.begin(), patch_.end(), [&](Index face) {
+  return std::all_of(region_.begin(), region_.end(), [&](Index face) {
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
       if (across_[corner] == kNoIndex) return false;
       const bool turned_alike = state_[face] == state_[face_of_corner(across_[corner])];
@@ -157,11 +157,11 @@ bool WindingFinder::is_closed() const {
 /// power 1.5.
 double WindingFinder::volume_share() const {
   Vec3 middle;
-  for (const Index face : patch_)
+  for (const Index face : region_)
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) middle += mesh_.corner_position(corner);
-  middle = middle * (1.0 / (3 * static_cast<double>(patch_.size())));
+  middle = middle * (1.0 / (3 * static_cast<double>(region_.size())));
   double volume = 0, area = 0;
-  for (const Index face : patch_) {
+  for (const Index face : region_) {
     const Vec3 normal = area_vector(mesh_, face);
     const double pyramid = dot(mesh_.corner_position(3 * face) - middle, normal) / 6;
     volume += state_[face] == State::AsFirst ? pyramid : -pyramid;
@@ -172,13 +172,13 @@ double WindingFinder::volume_share() const {
 
 bool WindingFinder::first_is_front() const {
   std::int64_t of_normals = 0, of_faces = 0;
-  for (const Index face : patch_) {
+  for (const Index face : region_) {
     const int sign = state_[face] == State::AsFirst ? 1 : -1;
     of_normals += sign * sides_[face];
     of_faces += sign;
   }
   if (of_normals != 0) return of_normals > 0;
-  const double majority = (1 + std::abs(static_cast<double>(of_faces)) / static_cast<double>(patch_.size())) / 2;
+  const double majority = (1 + std::abs(static_cast<double>(of_faces)) / static_cast<double>(region_.size())) / 2;
   if (majority >= kClearMajority) return of_faces > 0;
   const double outwards = volume_share();
   if (std::abs(outwards) > (is_closed() ? kClosedVolume : kOpenVolume)) return outwards > 0;
