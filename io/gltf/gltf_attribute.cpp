@@ -64,6 +64,10 @@ std::optional<GltfSemantic> gltf_semantic(const Attribute& attribute) {
   return GltfSemantic{'_' + attribute.name};
 }
 
+bool same_layout(const Attribute& a, const Attribute& b) {
+  return a.name == b.name && a.type == b.type && a.component_count == b.component_count && a.normalized == b.normalized;
+}
+
 const char* gltf_type(std::uint8_t component_count) {
   constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
   return kTypes.at(component_count - 1u);

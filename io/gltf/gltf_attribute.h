@@ -17,6 +17,9 @@ struct GltfSemantic {
 /// glTF knows the name but not in this type. Nothing for types no vertex attribute may have.
 std::optional<GltfSemantic> gltf_semantic(const Attribute& attribute);
 
+/// Whether attributes differ in nothing but their data.
+bool same_layout(const Attribute& a, const Attribute& b);
+
 /// Returns glTF's name for vectors of 1 to 4 components.
 const char* gltf_type(std::uint8_t component_count);
 

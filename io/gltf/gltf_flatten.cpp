@@ -13,6 +13,7 @@
 
 #include "base/bytes.h"
 #include "base/files_beside.h"
+#include "gltf/gltf_attribute.h"
 #include "gltf/gltf_primitive.h"
 #include "gltf/gltf_scene.h"
 #include "gltf/gltf_skin.h"
@@ -39,10 +40,6 @@ bool is_known(std::string_view name) {
   return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end() ||
          std::any_of(kKnownPrefixes.begin(), kKnownPrefixes.end(),
                      [&](auto prefix) { return name.starts_with(prefix); });
-}
-
-bool same_layout(const Attribute& a, const Attribute& b) {
-  return a.name == b.name && a.type == b.type && a.component_count == b.component_count && a.normalized == b.normalized;
 }
 
 Attribute layout_of(const Attribute& a) { return {a.name, a.type, a.component_count, a.normalized, {}}; }

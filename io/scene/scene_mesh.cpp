@@ -16,10 +16,6 @@ namespace {
 
 constexpr std::size_t kAlwaysAllowedBytes = std::size_t{64} << 20;
 
-bool same_layout(const Attribute& a, const Attribute& b) {
-  return a.name == b.name && a.type == b.type && a.component_count == b.component_count && a.normalized == b.normalized;
-}
-
 /// Splits "TARGET_2:NORMAL"; such a name cannot come from `attributes`, where a primitive's targets are told apart.
 MeshColumn target_column(const Attribute& layout) {
   const std::size_t colon = layout.name.find(':');
