@@ -22,9 +22,10 @@ function(lodestone_module name)
   set(target lodestone_${name})
   add_library(${target} ${ARG_SOURCES})
   add_library(lodestone::${name} ALIAS ${target})
-  # Before 1.0, a minor version may change the interface, and so the name of the shared library.
+  # Before 1.0, a minor version may change the interface, and so the name of the shared library. Those installed find each
+  # other wherever they lie.
   set_target_properties(${target} PROPERTIES
-    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON INSTALL_RPATH "$ORIGIN"
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${target}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>

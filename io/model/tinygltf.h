@@ -1,11 +1,9 @@
 #pragma once
 
-// The one place that includes tinygltf: without stb, since images stay the files they are, and without files of its
-// own.
+// tinygltf as lodestone uses it: without stb, since images stay the files they are, and without files of its own.
 
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
 #define TINYGLTF_NO_FS
 #define TINYGLTF_NO_INCLUDE_JSON
 

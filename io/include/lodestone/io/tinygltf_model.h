@@ -4,6 +4,9 @@
 #include <lodestone/io/asset.h>
 #include <lodestone/io/scene.h>
 
+// A program links tinygltf's code of its own, or else takes that in lodestone::io, which is without stb: it then
+// defines TINYGLTF_NO_STB_IMAGE and TINYGLTF_NO_STB_IMAGE_WRITE before it includes tiny_gltf.h.
+
 namespace tinygltf {
 class Model;
 }
