@@ -230,10 +230,8 @@ Result<NodeTree> NodeTree::read(const GltfDocument& document) {
     LODESTONE_TRY(tree.at_rest_.emplace_back(), local_place(*node, text("node ", i)));
   }
   tree.order_ = roots_of(graph);
-  for (std::size_t i = 0; i < tree.order_.size(); ++i) {
-    const auto& children = graph.children[tree.order_[i]];
-    tree.order_.insert(tree.order_.end(), children.begin(), children.end());
-  }
+  for (std::size_t i = 0; i < tree.order_.size(); ++i)
+    for (const std::size_t child : graph.children[tree.order_[i]]) tree.order_.push_back(child);
   return tree;
 }
 
