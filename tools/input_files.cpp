@@ -36,6 +36,21 @@ Result<std::vector<std::byte>> read_bytes(const std::filesystem::path& path) {
   return is_standard_stream(path) ? read_standard_input() : read_file(path);
 }
 
+/// Opens a file whose bytes have been read.
+Result<Asset> open_asset(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  return is_standard_stream(path) ? Asset::read_bytes(bytes) : Asset::read(path);
+}
+
+/// Nothing for a file without levels and streams.
+Result<std::optional<DecodedAsset>> decode_asset(const Asset& asset) {
+  DecodedAsset decoded;
+  LODESTONE_TRY(decoded.streams, asset.streams());
+  if (asset.level_count() < 2 && decoded.streams.empty()) return std::nullopt;
+  LODESTONE_TRY(decoded.levels, asset.levels());
+  decoded.total_bytes = asset.total_bytes();
+  return decoded;
+}
+
 }  // namespace
 
 Result<Scene> read_scene(const std::filesystem::path& path, const std::string& format) {
@@ -55,10 +70,11 @@ Result<AssetOrScene> read_asset_or_scene(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_bytes(path));
   AssetOrScene file;
   if (may_be_gltf(bytes)) {
-    Result<Asset> asset = is_stream ? read_asset_bytes(bytes).map_error(of_standard_input) : read_asset(path);
+    auto asset = open_asset(path, bytes).and_then(decode_asset);
+    if (is_stream) asset = std::move(asset).map_error(of_standard_input);
     // A .glb from elsewhere may hold what only the general reader understands.
     if (!asset && asset.error().code != ErrorCode::Unsupported) return tl::unexpected(asset.error());
-    if (asset && (asset->levels.size() >= 2 || !asset->streams.empty())) file.asset = std::move(*asset);
+    if (asset) file.asset = std::move(*asset);
   }
   if (file.asset) return file;
   Result<Scene> scene = is_stream ? Scene::read_bytes(bytes, "") : Scene::read(path);
@@ -76,9 +92,8 @@ Result<Scene> read_levels(const std::filesystem::path& path, std::size_t level) 
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_bytes(path));
   if (!may_be_gltf(bytes))
     return tl::unexpected(not_streamed(path, ErrorCode::Unsupported, "it is neither .glb nor .gltf"));
-  Result<Scene> scene = is_standard_stream(path)
-                            ? Scene::read_multi_lod_bytes(bytes, level).map_error(of_standard_input)
-                            : Scene::read_multi_lod(path, level);
+  Result<Scene> scene = open_asset(path, bytes).and_then([&](const Asset& asset) { return asset.scene(level); });
+  if (is_standard_stream(path)) scene = std::move(scene).map_error(of_standard_input);
   const bool is_text = as_text(bytes).front() != 'g';
   if (scene ||
       (scene.error().code != ErrorCode::Unsupported && !(is_text && scene.error().code == ErrorCode::Malformed)))

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <lodestone/core/result.h>
 #include <lodestone/io/asset.h>
@@ -22,9 +23,16 @@ Result<Scene> read_scene(const std::filesystem::path& path, const std::string& f
 /// Reads a mesh. The standard input is what its content says.
 Result<MeshFile> read_mesh_file(const std::filesystem::path& path);
 
+/// A glTF with levels of detail or removal streams, all decoded.
+struct DecodedAsset {
+  std::vector<Asset::Level> levels;
+  std::vector<Asset::Stream> streams;
+  std::uint64_t total_bytes = 0;
+};
+
 /// What a file turned out to be.
 struct AssetOrScene {
-  std::optional<Asset> asset;  ///< a glTF with levels of detail or removal streams
+  std::optional<DecodedAsset> asset;
   std::optional<Scene> scene;  ///< what build would take any other file for
   std::uint64_t bytes = 0;     ///< with what lies beside it
 };

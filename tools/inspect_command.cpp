@@ -72,21 +72,21 @@ struct ListedStream {
   StreamDirectory directory;
 };
 
-std::uint64_t stream_bytes(const Asset& asset) {
+std::uint64_t stream_bytes(const DecodedAsset& asset) {
   std::uint64_t bytes = 0;
   for (const Asset::Stream& stream : asset.streams) bytes += stream.bytes.size();
   return bytes;
 }
 
 /// Everything but levels and streams: textures, animations, the glTF's JSON, headers, padding.
-std::uint64_t other_bytes(const Asset& asset) {
+std::uint64_t other_bytes(const DecodedAsset& asset) {
   std::uint64_t parts = stream_bytes(asset);
   for (const Asset::Level& level : asset.levels) parts += level.byte_length;
   return parts < asset.total_bytes ? asset.total_bytes - parts : 0;
 }
 
 /// One stream with its chunks; of several only what they are together.
-Json all_streams_json(const Asset& asset, std::span<const ListedStream> streams) {
+Json all_streams_json(const DecodedAsset& asset, std::span<const ListedStream> streams) {
   if (streams.empty()) return nullptr;
   Json json = stream_json(streams[0].directory);
   if (streams.size() == 1) return json;
@@ -95,7 +95,7 @@ Json all_streams_json(const Asset& asset, std::span<const ListedStream> streams)
   return json;
 }
 
-Json asset_json(const std::string& path, const Asset& asset, std::span<const ListedStream> streams) {
+Json asset_json(const std::string& path, const DecodedAsset& asset, std::span<const ListedStream> streams) {
   Json levels = Json::array();
   for (const Asset::Level& level : asset.levels) levels.push_back(level_json(level));
   Json by_mesh = Json::array();
@@ -108,15 +108,15 @@ Json asset_json(const std::string& path, const Asset& asset, std::span<const Lis
           {"kind", "asset"},
           {"bytes", asset.total_bytes},
           {"other_bytes", other_bytes(asset)},
-          {"diagonal", asset.box.diagonal()},
+          {"diagonal", asset.levels[0].box.diagonal()},
           {"levels", levels},
           {"stream", all_streams_json(asset, streams)},
           {"streams", by_mesh}};
 }
 
-void print_levels(const Asset& asset) {
+void print_levels(const DecodedAsset& asset) {
   TextTable table({"level", "faces", "vertices", "max", "mean", "rms", "epsilon", "bytes", "coding"});
-  const double diagonal = asset.box.diagonal();
+  const double diagonal = asset.levels[0].box.diagonal();
   for (std::size_t i = 0; i < asset.levels.size(); ++i) {
     const Asset::Level& level = asset.levels[i];
     table.add({text_of(i), text_of(level.face_count), text_of(level.vertex_count),
@@ -142,15 +142,15 @@ void print_stream(const ListedStream& stream) {
   table.print();
 }
 
-void print_asset(const std::string& path, const Asset& asset, std::span<const ListedStream> streams) {
+void print_asset(const std::string& path, const DecodedAsset& asset, std::span<const ListedStream> streams) {
   std::printf("%s: %llu bytes, %llu of them neither level nor stream; diagonal %s\n", path.c_str(),
               static_cast<unsigned long long>(asset.total_bytes), static_cast<unsigned long long>(other_bytes(asset)),
-              number_text(asset.box.diagonal()).c_str());
+              number_text(asset.levels[0].box.diagonal()).c_str());
   print_levels(asset);
   for (const ListedStream& stream : streams) print_stream(stream);
 }
 
-Result<Outcome> inspect_asset(const std::string& path, const Asset& asset, bool json) {
+Result<Outcome> inspect_asset(const std::string& path, const DecodedAsset& asset, bool json) {
   std::vector<ListedStream> streams;
   for (const Asset::Stream& stream : asset.streams) {
     LODESTONE_TRY(StreamDirectory directory, read_stream_directory(stream.bytes));

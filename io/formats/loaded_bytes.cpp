@@ -1,3 +1,5 @@
+#include "formats/loaded_bytes.h"
+
 #include <set>
 #include <system_error>
 
@@ -16,7 +18,7 @@ namespace {
 using namespace detail;
 
 /// Lists the files that a glTF names beside it.
-std::set<std::filesystem::path> files_beside(const Json& document) {
+std::set<std::filesystem::path> files_named_by(const Json& document) {
   std::set<std::filesystem::path> files;
   for (const char* array : {"buffers", "images"}) {
     const Json* list = find_member(document, array);
@@ -32,18 +34,22 @@ std::set<std::filesystem::path> files_beside(const Json& document) {
 
 }  // namespace
 
-Result<std::uint64_t> loaded_bytes(const std::filesystem::path& path) {
-  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  std::uint64_t total = bytes.size();
-  if (!is_gltf(bytes, extension_of(path))) return total;
-  LODESTONE_TRY(const GltfContainer container, split_container(bytes));
-  LODESTONE_TRY(const Json document, parse_json(container.json));
-  for (const std::filesystem::path& file : files_beside(document)) {
+std::uint64_t detail::bytes_beside(const Json& document, const std::filesystem::path& path) {
+  std::uint64_t total = 0;
+  for (const std::filesystem::path& file : files_named_by(document)) {
     std::error_code missing;
     const std::uintmax_t size = std::filesystem::file_size(path.parent_path() / file, missing);
     if (!missing) total += size;
   }
   return total;
+}
+
+Result<std::uint64_t> loaded_bytes(const std::filesystem::path& path) {
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  if (!is_gltf(bytes, extension_of(path))) return bytes.size();
+  LODESTONE_TRY(const GltfContainer container, split_container(bytes));
+  LODESTONE_TRY(const Json document, parse_json(container.json));
+  return bytes.size() + bytes_beside(document, path);
 }
 
 }  // namespace lodestone

@@ -203,7 +203,7 @@ Result<void> GltfDocument::load_buffers(std::vector<std::byte> binary_chunk, con
     const std::string uri = string_member(*buffer, "uri");
     std::vector<std::byte> bytes;
     if (is_fallback(*buffer)) {
-      buffers_.emplace_back();
+      content_->buffers.emplace_back();
       continue;
     }
     if (uri.empty()) {
@@ -221,14 +221,14 @@ Result<void> GltfDocument::load_buffers(std::vector<std::byte> binary_chunk, con
       return fail(ErrorCode::Malformed,
                   text(where, ": byteLength ", size, " where there are ", bytes.size(), " bytes"));
     bytes.resize(size);
-    buffers_.push_back(std::move(bytes));
+    content_->buffers.push_back(std::move(bytes));
   }
   return {};
 }
 
 std::size_t GltfDocument::expansion_limit() const {
   std::size_t limit = kAlwaysAllowedBytes;
-  for (const auto& buffer : buffers_) limit += kMaxExpansion * buffer.size();
+  for (const auto& buffer : content_->buffers) limit += kMaxExpansion * buffer.size();
   return limit;
 }
 
@@ -237,10 +237,10 @@ Result<std::span<const std::byte>> GltfDocument::slice_buffer(const Json& object
   LODESTONE_TRY(const std::size_t buffer, size_member(object, "buffer", where));
   LODESTONE_TRY(const std::size_t offset, size_member_or(object, "byteOffset", 0, where));
   LODESTONE_TRY(const std::size_t size, size_member(object, "byteLength", where));
-  if (buffer >= buffers_.size())
+  if (buffer >= content_->buffers.size())
     return fail(ErrorCode::Malformed,
-                text(where, ": buffer ", buffer, " does not exist: the file has ", buffers_.size()));
-  const std::span<const std::byte> bytes = buffers_[buffer];
+                text(where, ": buffer ", buffer, " does not exist: the file has ", content_->buffers.size()));
+  const std::span<const std::byte> bytes = content_->buffers[buffer];
   if (offset > bytes.size() || size > bytes.size() - offset)
     return fail(ErrorCode::Malformed, text(where, ": ", size, " bytes from ", offset, " exceed buffer ", buffer, " of ",
                                            bytes.size(), " bytes"));
@@ -248,16 +248,16 @@ Result<std::span<const std::byte>> GltfDocument::slice_buffer(const Json& object
 }
 
 Result<void> GltfDocument::decompress_views() {
-  decompressed_views_.resize(count("bufferViews"));
+  content_->decompressed_views.resize(count("bufferViews"));
   std::size_t budget = expansion_limit();
-  for (std::size_t i = 0; i < decompressed_views_.size(); ++i) {
+  for (std::size_t i = 0; i < content_->decompressed_views.size(); ++i) {
     LODESTONE_TRY(const Json* const view, element("bufferViews", "buffer view", i));
     const Json* extension = meshopt_extension(*view);
     if (extension == nullptr) continue;
     const std::string where = text("buffer view ", i);
     LODESTONE_TRY(const auto compressed, slice_buffer(*extension, where));
-    LODESTONE_TRY(decompressed_views_[i], decode_meshopt(*extension, compressed, budget, where));
-    budget -= decompressed_views_[i].size();
+    LODESTONE_TRY(content_->decompressed_views[i], decode_meshopt(*extension, compressed, budget, where));
+    budget -= content_->decompressed_views[i].size();
   }
   return {};
 }
@@ -267,7 +267,7 @@ Result<BufferView> GltfDocument::buffer_view(std::size_t index) const {
   LODESTONE_TRY(const Json* const json, element("bufferViews", "buffer view", index));
   BufferView view;
   if (const Json* extension = meshopt_extension(*json)) {
-    view.bytes = decompressed_views_[index];
+    view.bytes = content_->decompressed_views[index];
     LODESTONE_TRY(view.stride, size_member(*extension, "byteStride", where));
     return view;
   }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,7 +35,7 @@ struct AccessorData {
 
 /// A glTF asset in memory: the JSON as it came, everything unknown included, and all buffers.
 ///
-/// Every reference and count is checked against what is really there when it is followed.
+/// Every reference and count is checked against what is really there when it is followed. Copies share the buffers.
 class GltfDocument {
  public:
   /// Reads a .glb or .gltf with its buffers. `fetch` gets the files that buffers lie in.
@@ -67,9 +68,13 @@ class GltfDocument {
   Result<void> decompress_views();
   Result<std::span<const std::byte>> slice_buffer(const Json& object, std::string_view where) const;
 
+  struct Content {
+    std::vector<std::vector<std::byte>> buffers;
+    std::vector<std::vector<std::byte>> decompressed_views;  ///< by bufferView; empty for plain ones
+  };
+
   Json json_;
-  std::vector<std::vector<std::byte>> buffers_;
-  std::vector<std::vector<std::byte>> decompressed_views_;  ///< by bufferView; empty for plain ones
+  std::shared_ptr<Content> content_ = std::make_shared<Content>();
 };
 
 /// Returns the elements as floats, one after the other; normalized integers as glTF says.

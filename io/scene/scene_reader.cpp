@@ -83,34 +83,55 @@ Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
   return measure_instances(scene);
 }
 
-enum class Levels { Refused, TakenOut };
-
-Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, const FileFetcher& fetch_any, Levels levels,
-                              std::size_t level = 0, std::vector<EmbeddedImage> images = {}) {
-  auto scene = std::make_shared<Scene::Impl>();
-  scene->in_metres = true;
-  scene->images = std::move(images);
-  const auto fetch = [&](const std::filesystem::path& relative) {
-    auto file = fetch_any(relative);
-    if (file) scene->files.push_back(relative);
+/// Fetches files, and lists those that there were.
+FileFetcher listing(const FileFetcher& fetch, std::vector<std::filesystem::path>& files) {
+  return [&fetch, &files](const std::filesystem::path& relative) {
+    auto file = fetch(relative);
+    if (file) files.push_back(relative);
     return file;
   };
-  LODESTONE_TRY(scene->document, GltfDocument::parse(bytes, fetch));
-  LODESTONE_CHECK(check_required_extensions(scene->document));
-  if (levels == Levels::Refused) {
-    LODESTONE_CHECK(refuse_levels(scene->document));
-  } else {
-    LODESTONE_CHECK(take_out_levels(*scene, level));
-  }
-  LODESTONE_CHECK(read_meshes(*scene, levels == Levels::TakenOut && level == 0));
-  fetch_images(scene->document, fetch, scene->images, scene->notes);
+}
+
+std::shared_ptr<Scene::Impl> begin_scene(OpenedGltf& gltf) {
+  auto scene = std::make_shared<Scene::Impl>();
+  scene->in_metres = true;
+  scene->document = std::move(gltf.document);
+  scene->files = std::move(gltf.files);
+  return scene;
+}
+
+Result<Scene> finish_scene(std::shared_ptr<Scene::Impl> scene, const FileFetcher& fetch, bool with_streams) {
+  LODESTONE_CHECK(read_meshes(*scene, with_streams));
+  fetch_images(scene->document, listing(fetch, scene->files), scene->images, scene->notes);
   return Scene(std::move(scene));
+}
+
+Result<Scene> read_gltf_scene(std::span<const std::byte> bytes, FileFetcher fetch) {
+  LODESTONE_TRY(OpenedGltf gltf, open_gltf(bytes, std::move(fetch)));
+  return scene_of(std::move(gltf), {});
 }
 
 }  // namespace
 
-Result<Scene> detail::read_with_images(std::span<const std::byte> bytes, std::vector<EmbeddedImage> images) {
-  return read_gltf_scene(bytes, nothing_beside, Levels::Refused, 0, std::move(images));
+Result<OpenedGltf> detail::open_gltf(std::span<const std::byte> bytes, FileFetcher fetch) {
+  OpenedGltf gltf;
+  gltf.fetch = std::move(fetch);
+  LODESTONE_TRY(gltf.document, GltfDocument::parse(bytes, listing(gltf.fetch, gltf.files)));
+  LODESTONE_CHECK(check_required_extensions(gltf.document));
+  return gltf;
+}
+
+Result<Scene> detail::scene_of(OpenedGltf gltf, std::vector<EmbeddedImage> images) {
+  LODESTONE_CHECK(refuse_levels(gltf.document));
+  auto scene = begin_scene(gltf);
+  scene->images = std::move(images);
+  return finish_scene(std::move(scene), gltf.fetch, false);
+}
+
+Result<Scene> detail::scene_of_level(OpenedGltf gltf, std::size_t level) {
+  auto scene = begin_scene(gltf);
+  LODESTONE_CHECK(take_out_levels(*scene, level));
+  return finish_scene(std::move(scene), gltf.fetch, level == 0);
 }
 
 Result<Scene> Scene::read(const std::filesystem::path& path) {
@@ -120,26 +141,15 @@ Result<Scene> Scene::read(const std::filesystem::path& path) {
     if (!file) return tl::unexpected<Error>(with_path(std::move(file).error(), path));
     return from_mesh(std::move(*file), path.stem().string());
   }
-  return read_gltf_scene(bytes, files_beside(path), Levels::Refused).map_error([&](Error error) {
+  return read_gltf_scene(bytes, files_beside(path)).map_error([&](Error error) {
     return with_path(std::move(error), path);
   });
 }
 
 Result<Scene> Scene::read_bytes(std::span<const std::byte> bytes, const std::string& extension) {
-  if (is_gltf(bytes, extension)) return read_gltf_scene(bytes, nothing_beside, Levels::Refused);
+  if (is_gltf(bytes, extension)) return read_gltf_scene(bytes, nothing_beside);
   LODESTONE_TRY(MeshFile file, read_mesh_bytes(bytes, extension));
   return from_mesh(std::move(file), "mesh");
-}
-
-Result<Scene> Scene::read_multi_lod(const std::filesystem::path& path, std::size_t level) {
-  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  return read_gltf_scene(bytes, files_beside(path), Levels::TakenOut, level).map_error([&](Error error) {
-    return with_path(std::move(error), path);
-  });
-}
-
-Result<Scene> Scene::read_multi_lod_bytes(std::span<const std::byte> bytes, std::size_t level) {
-  return read_gltf_scene(bytes, nothing_beside, Levels::TakenOut, level);
 }
 
 const std::vector<SceneMesh>& Scene::meshes() const { return impl_->meshes; }

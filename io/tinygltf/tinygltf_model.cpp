@@ -166,7 +166,8 @@ Result<Scene> scene_from_model(const tinygltf::Model& model) {
   LODESTONE_CHECK(refuse_meshopt(model));
   LODESTONE_TRY(std::vector<EmbeddedImage> images, images_of(model));
   LODESTONE_TRY(const std::vector<std::byte> glb, write_model(model));
-  return read_with_images(glb, std::move(images));
+  LODESTONE_TRY(OpenedGltf gltf, open_gltf(glb, nothing_beside));
+  return scene_of(std::move(gltf), std::move(images));
 }
 
 Result<tinygltf::Model> model_from_asset(const EncodedAsset& asset) {

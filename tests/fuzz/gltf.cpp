@@ -57,9 +57,16 @@ void encode_again(const lodestone::Result<lodestone::Scene>& scene) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span(data, size));
   const auto file = lodestone::read_mesh_bytes(bytes, "gltf");
-  const auto asset = lodestone::read_asset_bytes(bytes);
-  if ((!file && file.error().message.empty()) || (!asset && asset.error().message.empty())) std::abort();
+  if (!file && file.error().message.empty()) std::abort();
   encode_again(lodestone::Scene::read_bytes(bytes, "gltf"));
-  encode_again(lodestone::Scene::read_multi_lod_bytes(bytes));
+  const auto asset = lodestone::Asset::read_bytes(bytes);
+  if (!asset) {
+    if (asset.error().message.empty()) std::abort();
+    return 0;
+  }
+  const auto levels = asset->levels();
+  const auto streams = asset->streams();
+  if ((!levels && levels.error().message.empty()) || (!streams && streams.error().message.empty())) std::abort();
+  encode_again(asset->scene());
   return 0;
 }

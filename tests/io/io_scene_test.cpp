@@ -247,7 +247,7 @@ TEST_CASE("every scene of the models keeps all but its geometry, and its geometr
       options.draco = draco;
       const EncodedAsset asset = checked(encode_scene(scene, levels, options));
       check_kept(in, GltfFile::from_glb(asset.glb));
-      const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+      const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
       REQUIRE(again.meshes().size() == scene.meshes().size());
       std::size_t drawn = 0;
       for (const SceneMesh& mesh : scene.meshes()) drawn += mesh.mesh.face_count() * mesh.instance_count;
@@ -269,7 +269,7 @@ TEST_CASE("taking the levels out again gives the document of one level") {
     CAPTURE(path);
     const Scene scene = checked(Scene::read(path));
     const EncodedAsset asset = checked(encode_scene(scene, halved(scene, 3), plain()));
-    const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+    const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
     const GltfFile out = GltfFile::from_glb(checked(encode_scene_level(again, halved(again, 1), 0, plain())).glb);
     const GltfFile once = GltfFile::from_glb(checked(encode_scene_level(scene, halved(scene, 1), 0, plain())).glb);
     for (const char* member : {"nodes", "animations", "skins", "materials", "scenes", "extensionsUsed"})
@@ -337,9 +337,9 @@ TEST_CASE("instances share their levels' data, and the largest scale counts") {
   CHECK((*lod_node(out, "big_LOD0"))["mesh"] == 0);
   const auto mesh_at = [&](const char* name) { return out.json["meshes"][(*lod_node(out, name))["mesh"].get<int>()]; };
   CHECK(mesh_at("big_LOD1")["primitives"] == mesh_at("node_LOD1")["primitives"]);
-  const Asset read_back = checked(read_asset_bytes(asset.glb));
-  CHECK(read_back.levels[0].mesh.face_count() == 16);
-  CHECK(read_back.levels[1].maximum_deviation == test::Approx(0.03));
+  const auto read_back = checked(checked(Asset::read_bytes(asset.glb)).levels());
+  CHECK(read_back[0].mesh.face_count() == 16);
+  CHECK(read_back[1].maximum_deviation == test::Approx(0.03));
 }
 
 TEST_CASE("levels are measured as clients decode them, attributes and all") {
@@ -360,14 +360,14 @@ TEST_CASE("levels are measured as clients decode them, attributes and all") {
     const std::vector<AssetLevel> measured = geometry.levels()[0];
     for (AssetLevel& level : geometry.levels()[0]) level.deviation.backward.maximum = 0.25;
     const EncodedAsset asset = checked(write_asset(std::move(geometry)));
-    const Asset read_back = checked(read_asset_bytes(asset.glb));
+    const auto read_back = checked(checked(Asset::read_bytes(asset.glb)).levels());
     REQUIRE(measured.size() == 2);
     for (std::size_t i = 0; i < measured.size(); ++i) {
-      const Mesh& decoded = read_back.levels[i].mesh;
+      const Mesh& decoded = read_back[i].mesh;
       CHECK(measured[i].mesh.face_count() == decoded.face_count());
       CHECK(measure_deviation(measured[i].mesh, decoded, few).maximum() < 1e-6);
       for (const AttributeDeviation& a : measure_attributes(measured[i].mesh, decoded, kSamples)) CHECK(a.mean < 1e-6);
-      CHECK(read_back.levels[i].maximum_deviation == 0.25);
+      CHECK(read_back[i].maximum_deviation == 0.25);
     }
     options.draco = false;
     EncodedGeometry exact = checked(encode_geometry(scene, levels, options));
@@ -525,7 +525,7 @@ TEST_CASE("morph targets, sparse ones too, stay with their vertices") {
     options.draco_position_bits = 8;  // steps of 4/255, which is why positions are rounded below
     const EncodedAsset asset = checked(encode_scene(scene, halved(scene), options));
     const GltfFile out = GltfFile::from_glb(asset.glb);
-    const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+    const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
     REQUIRE(again.meshes().at(0).mesh.wedge_count() == 10);
     const Mesh& decoded = again.meshes()[0].mesh;
     std::multiset<std::vector<float>> corners;
@@ -614,7 +614,7 @@ TEST_CASE("animation pointers reach all that a mesh, a primitive or a material h
                                           "/nodes/1/weights",
                                           "/nodes/2/weights"};
   CHECK(pointers_of(GltfFile::from_glb(asset.glb)) == after);
-  const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+  const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
   CHECK(pointers_of(GltfFile::from_glb(checked(encode_scene_level(again, halved(again, 1), 0, plain())).glb)) ==
         before);
 }
@@ -678,7 +678,7 @@ TEST_CASE("each level has materials of its own, variants' too, and the same text
     const std::size_t plain_one = mesh["primitives"][1]["material"];
     CHECK((out.json["materials"][plain_one] == GltfJson::object() && seen.insert(plain_one).second));
   }
-  const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+  const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
   const GltfFile back = GltfFile::from_glb(checked(encode_scene_level(again, halved(again, 1), 0, plain())).glb);
   CHECK(back.json["materials"] == maker.json["materials"]);
 }
@@ -720,7 +720,7 @@ TEST_CASE("a skinned mesh has the scale and the box of its pose at rest") {
   CHECK((*lod_node(out, "node_LOD1"))["skin"] == 0);
   // It was a root, and so it stays one: glTF warns of others.
   CHECK((out.json["nodes"][0]["mesh"] == 0 && out.json["nodes"][0]["extensions"].contains("MSFT_lod")));
-  const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+  const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
   const GltfFile back = GltfFile::from_glb(checked(encode_scene_level(again, halved(again, 1), 0, plain())).glb);
   check_equal(maker.json, back.json, "nodes");
   for (const Attribute& a : again.meshes().at(0).mesh.attributes)
@@ -852,7 +852,7 @@ TEST_CASE("meshes of equal scale share one grid, so that equal places decode to 
   options.draco_position_bits = 9;
   const Scene scene = read(maker);
   const EncodedAsset asset = checked(encode_scene(scene, halved(scene), options));
-  const Scene again = checked(Scene::read_multi_lod_bytes(asset.glb));
+  const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
   float left_end = -1, right_begin = 100;
   for (const Vec3f& p : again.meshes().at(0).mesh.positions) left_end = std::max(left_end, p.x);
   for (const Vec3f& p : again.meshes().at(1).mesh.positions) right_begin = std::min(right_begin, p.x);
@@ -884,7 +884,9 @@ TEST_CASE("files with levels already are refused, and those of other programs ar
   maker.add("nodes", {{"mesh", 0}});
   maker.json["nodes"][0]["extensions"]["MSFT_lod"]["ids"] = {1};
   CHECK(error_of(maker) == "node 0 already has levels of detail (MSFT_lod); build from the original");
-  const auto scene = Scene::read_multi_lod_bytes(maker.glb());
+  const Asset asset = checked(Asset::read_bytes(maker.glb()));
+  CHECK(asset.level_count() == 2);
+  const auto scene = asset.scene();
   REQUIRE_FALSE(scene);
   CHECK(scene.error().code == ErrorCode::Unsupported);
 }
@@ -939,7 +941,8 @@ TEST_CASE("a file that lacks any of its lists is read, or refused with words") {
     broken.json = whole.json;
     broken.json.erase(list);
     const ByteVector bytes = broken.glb();
-    for (const auto& scene : {Scene::read_multi_lod_bytes(bytes), Scene::read_bytes(bytes, "glb")})
+    const auto of_level = Asset::read_bytes(bytes).and_then([](const Asset& asset) { return asset.scene(); });
+    for (const auto& scene : {of_level, Scene::read_bytes(bytes, "glb")})
       CHECK((scene || !scene.error().message.empty()));
   }
 }

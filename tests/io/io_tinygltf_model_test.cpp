@@ -175,7 +175,7 @@ TEST_CASE("a built asset as a model has its levels and its streams") {
   REQUIRE(writer.WriteGltfSceneToStream(&model, written, false, true));
   const std::string bytes = written.str();
   const auto read = [](std::span<const std::byte> glb, std::size_t level) {
-    return Scene::read_multi_lod_bytes(glb, level).value();
+    return Asset::read_bytes(glb).value().scene(level).value();
   };
   for (std::size_t level = 0; level < built->levels.size(); ++level)
     check_same(read(built->files[0].glb, level), read(std::as_bytes(std::span(bytes)), level));

@@ -173,9 +173,9 @@ TEST_CASE("the file holds the levels the report lists") {
   const std::string option = GENERATE("--no-draco", "--qp=12");
   REQUIRE(shop.build({option}).exit_code == 0);
   const auto faces = faces_of_levels(shop.read_report());
-  const Asset asset = read_asset(shop.glb).value();
-  REQUIRE(asset.levels.size() == faces.size());
-  for (std::size_t i = 0; i < faces.size(); ++i) CHECK(asset.levels[i].mesh.face_count() == faces[i]);
+  const std::vector<Asset::Level> levels = Asset::read(shop.glb).value().levels().value();
+  REQUIRE(levels.size() == faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) CHECK(levels[i].mesh.face_count() == faces[i]);
 }
 
 TEST_CASE("the deviations of a level are those of the level in the file") {
@@ -183,10 +183,10 @@ TEST_CASE("the deviations of a level are those of the level in the file") {
   const std::string option = GENERATE("--no-draco", "--qp=8");
   REQUIRE(shop.build({option, "--levels", "3"}).exit_code == 0);
   const Json report = shop.read_report();
-  const Asset asset = read_asset(shop.glb).value();
-  for (std::size_t i = 0; i < asset.levels.size(); ++i) {
+  const std::vector<Asset::Level> levels = Asset::read(shop.glb).value().levels().value();
+  for (std::size_t i = 0; i < levels.size(); ++i) {
     CAPTURE(option, i);
-    REQUIRE(write_mesh(shop.folder / "level.ply", asset.levels[i].mesh));
+    REQUIRE(write_mesh(shop.folder / "level.ply", levels[i].mesh));
     const Json compared = shop.compare("level.ply")["deviation"], reported = report["levels"][i]["deviation"];
     CHECK(reported["max"].get<double>() == test::Approx(compared["max"].get<double>()).epsilon(0.02).margin(1e-9));
     for (const char* way : {"forward", "backward"})
@@ -195,7 +195,7 @@ TEST_CASE("the deviations of a level are those of the level in the file") {
               test::Approx(compared[way][number].get<double>()).epsilon(0.05).margin(1e-9));
     CHECK(reported["mean_normal_angle_degrees"].get<double>() ==
           test::Approx(compared["mean_normal_angle_degrees"].get<double>()).epsilon(0.05).margin(1e-3));
-    CHECK(asset.levels[i].maximum_deviation == test::Approx(reported["max"].get<double>()));
+    CHECK(levels[i].maximum_deviation == test::Approx(reported["max"].get<double>()));
   }
   CHECK((report["levels"][0]["deviation"]["max"].get<double>() > 0) == (option != "--no-draco"));
 }

@@ -169,9 +169,9 @@ TEST_CASE("the profile of files writes a scene for each level, and an index") {
     const auto path = shop.folder / level["file"].get<std::string>();
     CHECK(level["bytes"] == std::filesystem::file_size(path));
     CHECK(level["faces"] == report["levels"][i]["faces"]);
-    const Asset asset = read_asset(path).value();
-    CHECK(asset.levels.size() == 1);
-    CHECK(asset.streams.empty());
+    const Asset asset = Asset::read(path).value();
+    CHECK(asset.level_count() == 1);
+    CHECK(asset.streams().value().empty());
     const GltfFile file = GltfFile::read(path);
     CHECK(file.json["nodes"].size() == 3);
     CHECK(file.json["meshes"].size() == 2);

@@ -210,13 +210,13 @@ TEST_CASE("numbers of things are the original's in every level") {
   const Shop shop;
   REQUIRE(shop.build(shop.put("in.glb", maker)).exit_code == 0);
   const std::set<float> given(ids.begin(), ids.end());
-  const Asset asset = read_asset(shop.glb).value();
-  REQUIRE(asset.levels.size() == 5);
-  for (const Asset::Level& level : asset.levels) {
+  const std::vector<Asset::Level> levels = Asset::read(shop.glb).value().levels().value();
+  REQUIRE(levels.size() == 5);
+  for (const Asset::Level& level : levels) {
     const std::set<float> found = values_of(level.mesh, "_FEATURE_ID_0");
     CHECK(std::includes(given.begin(), given.end(), found.begin(), found.end()));
   }
-  CHECK(values_of(asset.levels[0].mesh, "_FEATURE_ID_0") == given);
+  CHECK(values_of(levels[0].mesh, "_FEATURE_ID_0") == given);
 }
 
 TEST_CASE("skins pose what is read, and undo its quantisation") {
@@ -294,19 +294,20 @@ TEST_CASE("the models of the field keep what they are") {
   }
   SECTION("a pipe of 10 km × 0.2 m") {
     CHECK(built("field/long-pipe.glb")["levels"][0]["faces"] == 19200);
-    CHECK(read_asset(shop.glb).value().levels[0].mesh.face_count() == 19200);
+    CHECK(Asset::read(shop.glb).value().levels().value()[0].mesh.face_count() == 19200);
     CHECK(shop.read_report()["levels"][4]["deviation"]["forward"]["max"].get<double>() < 0.1);
   }
   SECTION("texture coordinates with an outlier") {
     built("field/uv-outlier.glb");
     const Mesh given = read_mesh(*model("field/uv-outlier.glb")).value().mesh;
-    CHECK(values_of(read_asset(shop.glb).value().levels[0].mesh, "TEXCOORD_0") == values_of(given, "TEXCOORD_0"));
+    CHECK(values_of(Asset::read(shop.glb).value().levels().value()[0].mesh, "TEXCOORD_0") ==
+          values_of(given, "TEXCOORD_0"));
   }
   SECTION("numbers of features") {
     built("field/feature-ids.glb");
     const std::set<float> given = values_of(read_mesh(*model("field/feature-ids.glb")).value().mesh, "_FEATURE_ID_0");
-    const Asset asset = read_asset(shop.glb).value();
-    for (const Asset::Level& level : asset.levels) {
+    const std::vector<Asset::Level> levels = Asset::read(shop.glb).value().levels().value();
+    for (const Asset::Level& level : levels) {
       const std::set<float> found = values_of(level.mesh, "_FEATURE_ID_0");
       CHECK(std::includes(given.begin(), given.end(), found.begin(), found.end()));
     }

@@ -50,9 +50,9 @@ std::vector<Mesh> built_levels(const std::filesystem::path& in, const Options& o
   const ProgramRun run = run_program(words);
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
-  Asset asset = read_asset(folder / "out.glb").value();
+  std::vector<Asset::Level> levels = Asset::read(folder / "out.glb").value().levels().value();
   std::vector<Mesh> meshes;
-  for (Asset::Level& level : asset.levels) meshes.push_back(std::move(level.mesh));
+  for (Asset::Level& level : levels) meshes.push_back(std::move(level.mesh));
   return meshes;
 }
 

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
@@ -82,11 +84,16 @@ struct EncodedAsset {
   AssetLayout layout;
 };
 
-/// A multi-LOD file as read back, its scene flattened into world space.
-struct Asset {
-  /// A level of the whole scene.
+class Scene;
+
+/// A glTF with levels of detail, opened: the one reader of such files, whoever made them. Geometry is decoded when it
+/// is asked for. Copies share what was read.
+class Asset {
+ public:
+  /// A level of the whole scene, flattened into world space.
   struct Level {
     Mesh mesh;                       ///< decoded from Draco or plain accessors, assembled: clean and without doubles
+    Box box;                         ///< of all its faces, those without area included
     std::uint64_t face_count = 0;    ///< drawn, as stored
     std::uint64_t vertex_count = 0;  ///< drawn: of each mesh as `Scene` joins it
     std::uint64_t byte_length = 0;   ///< of its geometry, each mesh once
@@ -102,17 +109,31 @@ struct Asset {
     std::string mesh;  ///< the name of its mesh
     std::vector<std::byte> bytes;
   };
-  std::vector<Level> levels;    ///< finest first; one for an ordinary glTF
-  Box box;                      ///< of the finest level, faces without area included
-  std::vector<Stream> streams;  ///< in the order of the meshes; empty where the file has none
-  std::uint64_t total_bytes = 0;
+
+  /// Opens a .glb or .gltf with its buffers, an ordinary one, too. Errors: Unreadable, Malformed, LimitExceeded,
+  /// Unsupported.
+  static Result<Asset> read(const std::filesystem::path& path);
+  /// Opens the same from memory. Files beside it are out of reach.
+  static Result<Asset> read_bytes(std::span<const std::byte> bytes);
+
+  /// How many levels it has: 1 for an ordinary glTF.
+  std::size_t level_count() const;
+  /// Decodes all levels, finest first. Errors: Malformed, LimitExceeded, Unsupported.
+  Result<std::vector<Level>> levels() const;
+  /// Returns the streams in the order of the meshes; none where the file has none. Errors: Malformed.
+  Result<std::vector<Stream>> streams() const;
+  /// Returns the scene that the levels were made of, its meshes as in one of them: 0 is the finest, which comes with
+  /// its streams. Images beside the file are read here. Errors: as `Scene::read`; Unsupported where another program
+  /// made the levels, InvalidArgument for a level that there is none of.
+  Result<Scene> scene(std::size_t level = 0) const;
+  /// Of the file, with what lies beside it.
+  std::uint64_t total_bytes() const;
+
+ private:
+  struct Impl;
+  explicit Asset(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+
+  std::shared_ptr<const Impl> impl_;
 };
-
-/// Reads the levels and the streams of a .glb that `encode_scene` wrote.
-/// Errors: Unreadable, Malformed, LimitExceeded, Unsupported.
-Result<Asset> read_asset(const std::filesystem::path& path);
-
-/// Reads the same from memory. Errors: Malformed, LimitExceeded, Unsupported.
-Result<Asset> read_asset_bytes(std::span<const std::byte> bytes);
 
 }  // namespace lodestone

@@ -35,7 +35,7 @@ struct SceneMesh {
   std::vector<double> target_reach;
   std::vector<std::string> nodes;      ///< the names of the nodes that show it
   std::vector<std::string> materials;  ///< by number of the primitive: its material's name
-  std::vector<std::byte> stream;       ///< its removal stream; only of a scene read with `read_multi_lod`
+  std::vector<std::byte> stream;       ///< its removal stream; only of the finest `Asset::scene`
 };
 
 /// A glTF document with all it holds, and the meshes of it that levels can be made of: those that have triangles and
@@ -43,16 +43,11 @@ struct SceneMesh {
 class Scene {
  public:
   /// Reads a scene from glTF or GLB with its buffers and images; any other format as `from_mesh` says.
-  /// Errors: Unreadable, Malformed, LimitExceeded; Unsupported, also where the file has levels of detail already.
+  /// Errors: Unreadable, Malformed, LimitExceeded; Unsupported, also where the file has levels of detail already:
+  /// `Asset` reads those.
   static Result<Scene> read(const std::filesystem::path& path);
   /// Reads the same from memory; `extension` as for `read_mesh_bytes`. Files beside it are out of reach.
   static Result<Scene> read_bytes(std::span<const std::byte> bytes, const std::string& extension);
-  /// Reads a multi-LOD .glb or .gltf as the scene it was made of, the meshes as in one of its levels: 0 is the finest,
-  /// which comes with its streams. Errors: as `read`; Unsupported where another program made the levels,
-  /// InvalidArgument for a level that there is none of.
-  static Result<Scene> read_multi_lod(const std::filesystem::path& path, std::size_t level = 0);
-  /// The same from memory. Files beside it are out of reach.
-  static Result<Scene> read_multi_lod_bytes(std::span<const std::byte> bytes, std::size_t level = 0);
   /// Makes a scene of one node and its mesh, with the file's materials that faces use, and plain ones for numbers that
   /// it does not describe; 0 stands for none, or for a plain one where vertices have colours.
   static Result<Scene> from_mesh(MeshFile file, const std::string& name);

@@ -10,25 +10,21 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
-#include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
 
 #include "base/files_beside.h"
+#include "formats/loaded_bytes.h"
 #include "gltf/gltf_flatten.h"
 #include "gltf/gltf_primitive.h"
 #include "gltf/gltf_scene.h"
 #include "scene/scene_mesh.h"
+#include "scene/scene_reader.h"
 #include "scene/stream_extension.h"
 
 namespace lodestone {
 namespace {
 
 using namespace detail;
-
-Result<GltfDocument> read_document(std::span<const std::byte> bytes, const FileFetcher& fetch) {
-  LODESTONE_TRY(GltfDocument document, GltfDocument::parse(bytes, fetch));
-  LODESTONE_CHECK(check_required_extensions(document));
-  return document;
-}
 
 /// Adds up what the extras of many nodes say of one level.
 class LevelNumbers {
@@ -118,10 +114,10 @@ Result<std::uint64_t> count_vertices(const GltfDocument& document, std::span<con
   return count;
 }
 
-Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, const Chains& chains, Box& box) {
+Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index, const Chains& chains) {
   Asset::Level level;
   LODESTONE_TRY(const SoupFile file, flatten_scene(document, index));
-  if (index == 0) box = box_of(file.soup);
+  level.box = box_of(file.soup);
   level.face_count = file.soup.indices.size() / 3;
   LODESTONE_TRY(AssembledMesh assembled, assemble(file.soup));
   level.mesh = std::move(assembled.mesh);
@@ -136,6 +132,16 @@ Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index,
   return level;
 }
 
+Result<std::vector<Asset::Level>> read_levels(const GltfDocument& document, std::size_t count) {
+  LODESTONE_TRY(const auto chains, lod_chains(document));
+  std::vector<Asset::Level> levels;
+  for (std::size_t i = 0; i < count; ++i) {
+    LODESTONE_TRY(Asset::Level level, read_level(document, i, chains));
+    levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
 Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document) {
   std::vector<Asset::Stream> streams;
   for (std::size_t i = 0; i < document.count("meshes"); ++i) {
@@ -147,30 +153,54 @@ Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document) {
   return streams;
 }
 
-Result<Asset> read_asset_of(std::span<const std::byte> bytes, const FileFetcher& fetch) {
-  LODESTONE_TRY(const GltfDocument document, read_document(bytes, fetch));
-  LODESTONE_TRY(const std::size_t count, level_count(document));
-  LODESTONE_TRY(const auto chains, lod_chains(document));
-  Asset asset;
-  for (std::size_t i = 0; i < count; ++i) {
-    LODESTONE_TRY(Asset::Level level, read_level(document, i, chains, asset.box));
-    asset.levels.push_back(std::move(level));
-  }
-  LODESTONE_TRY(asset.streams, read_streams(document));
-  asset.total_bytes = bytes.size();
-  return asset;
-}
-
 }  // namespace
 
-Result<Asset> read_asset_bytes(std::span<const std::byte> bytes) { return read_asset_of(bytes, nothing_beside); }
+struct Asset::Impl {
+  OpenedGltf gltf;
+  std::size_t level_count = 1;
+  std::uint64_t total_bytes = 0;
+  std::filesystem::path path;  ///< empty for what was read from memory
 
-Result<Asset> read_asset(const std::filesystem::path& path) {
+  static Result<Impl> open(std::span<const std::byte> bytes, FileFetcher fetch) {
+    Impl impl;
+    LODESTONE_TRY(impl.gltf, open_gltf(bytes, std::move(fetch)));
+    LODESTONE_TRY(impl.level_count, lodestone::detail::level_count(impl.gltf.document));
+    impl.total_bytes = bytes.size();
+    return impl;
+  }
+
+  /// Has an error say which file it is of.
+  template <class T>
+  Result<T> named(Result<T> result) const {
+    if (result || path.empty()) return result;
+    return tl::unexpected<Error>(with_path(std::move(result).error(), path));
+  }
+};
+
+Result<Asset> Asset::read(const std::filesystem::path& path) {
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  auto asset = read_asset_of(bytes, files_beside(path));
-  if (!asset) return tl::unexpected<Error>(with_path(std::move(asset).error(), path));
-  LODESTONE_TRY(asset->total_bytes, loaded_bytes(path));
-  return asset;
+  auto opened = Impl::open(bytes, files_beside(path));
+  if (!opened) return tl::unexpected<Error>(with_path(std::move(opened).error(), path));
+  opened->path = path;
+  opened->total_bytes += bytes_beside(opened->gltf.document.json(), path);
+  return Asset(std::make_shared<const Impl>(std::move(*opened)));
 }
+
+Result<Asset> Asset::read_bytes(std::span<const std::byte> bytes) {
+  LODESTONE_TRY(Impl opened, Impl::open(bytes, nothing_beside));
+  return Asset(std::make_shared<const Impl>(std::move(opened)));
+}
+
+std::size_t Asset::level_count() const { return impl_->level_count; }
+
+Result<std::vector<Asset::Level>> Asset::levels() const {
+  return impl_->named(read_levels(impl_->gltf.document, impl_->level_count));
+}
+
+Result<std::vector<Asset::Stream>> Asset::streams() const { return impl_->named(read_streams(impl_->gltf.document)); }
+
+Result<Scene> Asset::scene(std::size_t level) const { return impl_->named(scene_of_level(impl_->gltf, level)); }
+
+std::uint64_t Asset::total_bytes() const { return impl_->total_bytes; }
 
 }  // namespace lodestone
