@@ -295,7 +295,9 @@ class StreamDecoder {
     if (!(triangle[0] < triangle[1] && triangle[1] < triangle[2] && triangle[2] < size))
       return broken("a triangle is outside its polygon");
     const std::uint32_t code = first ? values[kFirstSlots].next() : values[kOtherSlots].next();
-    const Index slot = first ? code : code == 0 ? tracer_.expected_slot(triangle) : code - 1;
+    const Index expected = tracer_.expected_slot(triangle), slot = first ? code : code == 0 ? expected : code - 1;
+    if (!first && code != 0 && slot == expected)
+      return broken(text("face ", slot, " is the expected one, which 0 says"));
     if (slot >= faces_->face_count(group)) return broken(text("face ", slot, " of ", faces_->face_count(group)));
     const auto face = faces_->face(group, slot);
     int rotation = tracer_.rotation_of(triangle, face);

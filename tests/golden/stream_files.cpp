@@ -94,6 +94,20 @@ StreamBytes face_turned(TakenStream stream) {
   return stream.sealed();
 }
 
+/// Writes the first slot of chunk 1 that is the expected one as any other.
+StreamBytes expected_slot_written(TakenStream stream) {
+  const ProgressiveMesh mesh = decode_stream(stream.joined()).value();
+  std::vector<Index> other_slots;
+  for (Index s = 0; s < mesh.sectors.size(); ++s)
+    for (std::uint64_t i = mesh.slot_begin(s) + 1; i < mesh.slot_begin(s + 1); ++i)
+      other_slots.push_back(mesh.slots[i]);
+  return with_columns(std::move(stream), 1, [&](std::vector<Column>& columns) {
+    std::vector<std::uint32_t>& codes = columns[detail::kOtherSlots].values;
+    const auto first = static_cast<std::size_t>(std::find(codes.begin(), codes.end(), 0) - codes.begin());
+    codes.at(first) = other_slots.at(first) + 1;
+  });
+}
+
 /// Writes a field of the header, or of the directory's entry for chunk 1.
 template <class T>
 auto header_field(std::size_t at, T value) {
@@ -476,6 +490,7 @@ std::vector<EditedFile> breaking_edits() {  // NOLINT(readability-function-size)
        in_column(kOtherSlots, [](Values& v) { v.at(0) = 1 + 0; })},
       {"face-elsewhere", "closed", "record 1: a second slot whose face lacks the corner that is known",
        in_column(kOtherSlots, [](Values& v) { v.at(0) = 1 + 1; })},
+      {"slot-expected", "closed", "a slot that is the expected one, as slot + 1", expected_slot_written},
       {"deviation-negative", "closed", "deviation after record 0: -1", error_after_first(kDeviations, 56, -1)},
       {"curvature-error-infinite", "closed", "curvature error after record 0: infinite",
        error_after_first(kCurvatures, 60, std::numeric_limits<float>::infinity())},
