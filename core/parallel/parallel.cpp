@@ -5,6 +5,7 @@
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <new>
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -40,9 +41,18 @@ class FirstFailure {
   std::exception_ptr exception_;
 };
 
+/// Throws std::bad_alloc where memory is about to end: if it does while oneTBB sets itself up, 2022.1 waits for a lock
+/// that it holds itself, without end.
+void check_memory() {
+  constexpr std::size_t kSetupBytes = 8 << 20;
+  void* volatile block = ::operator new(kSetupBytes);  // volatile: not to be optimised away
+  ::operator delete(block);
+}
+
 }  // namespace
 
 void with_threads(std::size_t thread_count, const std::function<void()>& work) {
+  check_memory();
   const int available = tbb::this_task_arena::max_concurrency();
   const auto wanted = std::min(thread_count, static_cast<std::size_t>(available));
   tbb::task_arena arena(thread_count == 0 ? available : static_cast<int>(wanted));
@@ -50,6 +60,7 @@ void with_threads(std::size_t thread_count, const std::function<void()>& work) {
 }
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
+  check_memory();
   FirstFailure failure;
   // Jobs are large and of any length: each is a task of its own.
   tbb::parallel_for(
