@@ -3,5 +3,5 @@
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 run_step(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
 build_programs(build -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
-run_programs(build)
+run_programs(build ${LODESTONE_SOURCE}/demo/suzi.glb)
 run_with_pkg_config()

@@ -18,15 +18,16 @@ function(run_draw folder)
   run_step(${WORK_DIR}/${folder}/draw ${LODESTONE_SOURCE}/tests/golden/stream-1.0.lds)
 endfunction()
 
-function(run_programs folder)
+# run_programs(FOLDER MODEL): MODEL is what to build from; level.obj is a small one that the first program leaves.
+function(run_programs folder model)
   run_draw(${folder})
   run_step(${WORK_DIR}/${folder}/consumer ${WORK_DIR}/level.obj)
-  run_step(${WORK_DIR}/${folder}/build ${LODESTONE_SOURCE}/demo/suzi.glb ${WORK_DIR}/suzi.glb)
+  run_step(${WORK_DIR}/${folder}/build ${model} ${WORK_DIR}/built.glb)
   run_step(${WORK_DIR}/${folder}/model)
   run_step(${WORK_DIR}/${folder}/model_with_own_tinygltf)
 endfunction()
 
-# Builds two programs with what pkg-config says of the package installed in WORK_DIR/prefix, and runs them.
+# Builds two programs with what pkg-config says of the package installed in WORK_DIR/prefix, and runs them after run_programs.
 function(run_with_pkg_config)
   find_program(PKG_CONFIG NAMES pkg-config pkgconf)
   if(NOT PKG_CONFIG)
@@ -51,7 +52,7 @@ function(run_with_pkg_config)
              -Wl,-rpath,${libraries})
   endforeach()
   run_draw(pkg-config)
-  run_step(${WORK_DIR}/pkg-config/build ${LODESTONE_SOURCE}/demo/suzi.glb ${WORK_DIR}/suzi.glb)
+  run_step(${WORK_DIR}/pkg-config/build ${WORK_DIR}/level.obj ${WORK_DIR}/built.glb)
 endfunction()
 
 # From nothing: an old install must not stand in for a file that is no longer installed.
