@@ -162,7 +162,7 @@ TEST_CASE("elements are picked with all their bytes, in the order given, as ofte
     }
 }
 
-TEST_CASE("a corner names a wedge, which names a vertex; without materials every face has material 0") {
+TEST_CASE("a corner names a wedge, which names a vertex, and without materials every face has material 0") {
   for (const NamedShape& shape : all_shapes()) {
     INFO(shape.name);
     Mesh mesh = mesh_of(shape.soup);

@@ -181,7 +181,7 @@ TEST_CASE("obj: what is missing or has no place is named, once") {
   CHECK_THAT(all_notes(folder.read("y.obj").notes), contains("not beside or below"));
 }
 
-TEST_CASE("mtl: bumps in colour are normals, and that is said; grey ones are heights, which are left out") {
+TEST_CASE("mtl: bumps in colour are normals, and that is said, while grey ones are heights, which are left out") {
   const Folder folder;
   folder.write("normals.png", png("n"));
   folder.write("heights.png", png("h", 0));
@@ -289,7 +289,7 @@ TEST_CASE("ply: colours under their common names, on vertices and on faces") {
   }
 }
 
-TEST_CASE("ply: faces of two colours meet in a seam; what has no place is named") {
+TEST_CASE("ply: faces of two colours meet in a seam, and what has no place is named") {
   const std::string rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   const MeshFile file = read(ply_square("property float confidence\n", rgb + "property float nx\n",
                                         "0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n3 0 1 2 255 0 0 1\n3 0 2 3 0 0 255 1\n"),

@@ -218,7 +218,7 @@ TEST_CASE("weights of animations that are broken, or of others, count for nothin
   check_close(reached(maker), {1, 1});
 }
 
-TEST_CASE("a node's own weights stand for those of its mesh; of several nodes the largest count") {
+TEST_CASE("a node's own weights stand for those of its mesh, and of several nodes the largest count") {
   GltfMaker maker = two_morphed_balls();
   maker.json["meshes"][0]["weights"] = {4, 0};
   check_close(reached(maker), {4, 1});

@@ -136,7 +136,7 @@ TEST_CASE("levels measured one after the other agree with each on its own") {
   }
 }
 
-TEST_CASE("what is enough is shown, and no more; the bound stays true, for the levels that follow, too") {
+TEST_CASE("what is enough is shown and no more, and the bound stays true for the levels that follow, too") {
   for (const auto& [name, mesh, levels] : small_levels()) {
     INFO(name);
     LevelDeviation deviation(mesh);

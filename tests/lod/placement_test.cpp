@@ -205,7 +205,7 @@ TEST_CASE("joints and weights stay those of the vertex") {
   }
 }
 
-TEST_CASE("what is fixed stays bit for bit, and so do faces between fixed vertices; the rest is fitted") {
+TEST_CASE("what is fixed stays bit for bit, and so do faces between fixed vertices, while the rest is fitted") {
   std::size_t moved = 0;
   for (const NamedShape& shape : manifold_shapes()) {
     const Mesh mesh = mesh_of(shape.soup);

@@ -218,7 +218,7 @@ TEST_CASE("build: settings lock and weigh nodes and materials by name, and name 
   CHECK_THAT(refusal("[]"), contains("is not a JSON object"));
 }
 
-TEST_CASE("build: weights are checked and reported; attributes' deviations are in the report") {
+TEST_CASE("build: weights are checked and reported, and attributes' deviations are in the report") {
   const SceneShop shop;
   CHECK_THAT(shop.build({"--weight", "smell=1"}).err,
              contains("'smell' is not normal, texcoord, color, skin or target"));
