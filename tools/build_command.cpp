@@ -100,6 +100,9 @@ void BuildCommand::add_to(CLI::App& app) {
   app.add_option("--report", report, "Write a JSON report")->type_name("R.json");
   app.add_option("--html", html, "Write a page that shows the levels, their errors and where these are")
       ->type_name("P.html");
+  app.add_option("--effort", effort, "How much work the result is worth: 1 is the fastest, 9 the best (default 5)")
+      ->check(CLI::Range(kLeastEffort, kMostEffort))
+      ->type_name("N");
   app.add_option("--threads", thread_count, "Use at most so many threads (default: all cores); the result is the same")
       ->check(CLI::Range(1, kMaxThreadCount))
       ->type_name("N");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <lodestone/core/effort.h>
 #include <lodestone/core/result.h>
 
 #include "command.h"
@@ -48,6 +49,7 @@ struct BuildCommand {
   std::optional<int> position_bits;  ///< unset: 14, or what the shape needs
   std::optional<double> grid_step;   ///< in place of bits
   std::vector<double> grid_origin{0, 0, 0};
+  int effort = kDefaultEffort;
   std::size_t thread_count = 0;  ///< 0: as many as the machine has cores
   bool quiet = false;
   bool strict = false;

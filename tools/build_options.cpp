@@ -102,6 +102,7 @@ bool writes_stream(const BuildCommand& options) { return !options.no_stream && !
 
 Result<BuildOptions> build_options(const BuildCommand& command) {
   BuildOptions options;
+  options.effort = command.effort;
   LODESTONE_TRY(options.targets, requested_levels(command));
   LODESTONE_TRY(options.simplify, simplify_options(command));
   if (command.settings) {
@@ -120,7 +121,8 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
 }
 
 Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count) {
-  Json json = {{"metric", options.metric},
+  Json json = {{"effort", options.effort},
+               {"metric", options.metric},
                {"normalise", options.normalisation},
                {"reference", options.reference},
                {"levels", level_count},

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include <lodestone/lod/cursor.h>
@@ -24,26 +25,36 @@ std::vector<Level> levels_of(const Mesh& mesh, std::span<const std::size_t> face
     std::fprintf(stderr, "lodestone: %s\n", simplified.error().message.c_str());
     std::exit(1);
   }
+  const CpuClock preparing;
+  std::optional<LevelFitter> fitter;
+  if (fitted) fitter.emplace(mesh);
+  const double prepare_seconds = fitted ? preparing.seconds() : 0;
+  PlacementOptions placement;
+  placement.effort = options.effort;
   std::vector<Level> levels;
   Cursor cursor(simplified->mesh);
   for (const std::size_t faces : face_counts) {
     cursor.seek(position_for_faces(simplified->mesh, faces));
     const CpuClock fitting;
     Mesh level = extract_level(simplified->mesh, cursor);
-    if (fitted) level = optimise_placement(mesh, level);
-    levels.push_back({surface_of(level), simplify_seconds + (fitted ? fitting.seconds() : 0)});
+    if (fitted) level = fitter->fit(level, placement);
+    levels.push_back({surface_of(level), simplify_seconds + prepare_seconds + (fitted ? fitting.seconds() : 0)});
   }
   return levels;
 }
 
 }  // namespace
 
-std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::size_t> face_counts) {
-  return levels_of(mesh, face_counts, {}, true);
+std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::size_t> face_counts, int effort) {
+  SimplifyOptions options;
+  options.effort = effort;
+  return levels_of(mesh, face_counts, std::move(options), true);
 }
 
-std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts) {
-  return lodestone_stream(mesh, face_counts, {});
+std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts, int effort) {
+  SimplifyOptions options;
+  options.effort = effort;
+  return lodestone_stream(mesh, face_counts, std::move(options));
 }
 
 std::vector<Level> lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts,

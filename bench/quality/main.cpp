@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include <lodestone/core/effort.h>
 #include <lodestone/io/read_mesh.h>
 
 #include "grid.h"
@@ -31,6 +32,7 @@ struct Options {
   std::vector<double> percents = {50, 10, 2, 0.5};
   std::vector<std::string> only;  ///< keys of simplifiers; empty: all
   std::size_t samples = 500'000;  ///< each way
+  int effort = kDefaultEffort;
   bool fast = false;
   bool check = false;
   bool grid = false;
@@ -83,7 +85,7 @@ int check_referee(const Options& options) {
 
 std::vector<Simplifier> chosen_simplifiers(const Options& options) {
   std::vector<Simplifier> chosen;
-  for (Simplifier& simplifier : simplifiers()) {
+  for (Simplifier& simplifier : simplifiers(options.effort)) {
     const bool wanted = std::find(options.only.begin(), options.only.end(), simplifier.key) != options.only.end();
     if (options.only.empty() || wanted) chosen.push_back(std::move(simplifier));
   }
@@ -187,6 +189,8 @@ int main(int argc, char** argv) {
   app.add_option("--only", options.only, "simplifiers: levels, stream, lt-end, meshopt, openmesh, vtk-pro, lt, gh, vtk")
       ->delimiter(',');
   app.add_option("--samples", options.samples, "of a surface, each way, at most");
+  app.add_option("--effort", options.effort, "lodestone's, 1 to 9")
+      ->check(CLI::Range(lodestone::kLeastEffort, lodestone::kMostEffort));
   app.add_flag("--fast", options.fast, "10 % and 2 % alone, a tenth of the samples");
   app.add_flag("--check", options.check, "measure what the Metro tool measured, and print both");
   app.add_option("--readme", options.readme, "file whose table between the marker comments is replaced");

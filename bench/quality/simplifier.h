@@ -28,14 +28,15 @@ struct Simplifier {
   std::function<std::vector<Level>(const Mesh& mesh, std::span<const std::size_t> face_counts)> run;
 };
 
-/// Returns every simplifier this build has. The one place where a new one is added to the table.
-std::vector<Simplifier> simplifiers();
+/// Returns every simplifier this build has; `effort` is lodestone's. The one place where a new one is added to the
+/// table.
+std::vector<Simplifier> simplifiers(int effort);
 
 /// Returns the names of those that were not found when the build was configured.
 std::vector<std::string> missing_simplifiers();
 
-std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::size_t> face_counts);
-std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts);
+std::vector<Level> run_lodestone_levels(const Mesh& mesh, std::span<const std::size_t> face_counts, int effort);
+std::vector<Level> run_lodestone_stream(const Mesh& mesh, std::span<const std::size_t> face_counts, int effort);
 std::vector<Level> run_cgal_lindstrom_turk(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_cgal_lindstrom_turk_end_points(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_cgal_garland_heckbert(const Mesh& mesh, std::span<const std::size_t> face_counts);

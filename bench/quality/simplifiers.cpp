@@ -16,10 +16,15 @@ double cpu_now() {
 CpuClock::CpuClock() : start_(cpu_now()) {}
 double CpuClock::seconds() const { return cpu_now() - start_; }
 
-std::vector<Simplifier> simplifiers() {
+std::vector<Simplifier> simplifiers(int effort) {
+  const auto with_effort = [effort](auto* run) {
+    return [effort, run](const Mesh& mesh, std::span<const std::size_t> face_counts) {
+      return run(mesh, face_counts, effort);
+    };
+  };
   return {
-      {"levels", "lodestone, levels", false, run_lodestone_levels},
-      {"stream", "lodestone, stream", true, run_lodestone_stream},
+      {"levels", "lodestone, levels", false, with_effort(run_lodestone_levels)},
+      {"stream", "lodestone, stream", true, with_effort(run_lodestone_stream)},
       {"lt-end", "Lindstrom–Turk's cost, end points (CGAL, not stock)", true, run_cgal_lindstrom_turk_end_points},
       {"meshopt", "meshoptimizer", true, run_meshoptimizer},
 #ifdef LODESTONE_BENCH_OPENMESH

@@ -128,6 +128,11 @@ void SurfaceBounds::lower(Index face, double bound, std::span<const Index> found
 SupremumSearch::SupremumSearch(const Mesh& from, const SurfaceIndex& to, PatchBound& to_patch, SurfaceBounds& bounds)
     : from_(from), to_(to), to_patch_(to_patch), bounds_(bounds) {}
 
+void SupremumSearch::scout(std::size_t count, Goal& goal) {
+  const std::size_t step = std::max<std::size_t>(from_.face_count() / std::max<std::size_t>(count, 1), 1);
+  for (std::size_t face = 0; face < from_.face_count(); face += step) query_one_vertex(static_cast<Index>(face), goal);
+}
+
 void SupremumSearch::visit_vertices(Goal& goal) {
   const Index count = static_cast<Index>(from_.face_count());
   for (Index face = 0; face < count; ++face) {

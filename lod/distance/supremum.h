@@ -75,6 +75,8 @@ class SupremumSearch {
   /// All arguments outlive the search; `to` and `to_patch` are of one surface, which is not empty.
   SupremumSearch(const Mesh& from, const SurfaceIndex& to, PatchBound& to_patch, SurfaceBounds& bounds);
 
+  /// Queries about so many vertices, spread over the mesh's faces, so that the goal is near what it will be.
+  void scout(std::size_t count, Goal& goal);
   /// Lowers the faces' bounds as far as the goal asks and queries at vertices can.
   void visit_vertices(Goal& goal);
   /// Splits faces until all bounds meet the goal or `budget` parts were halved.

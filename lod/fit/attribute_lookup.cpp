@@ -185,20 +185,31 @@ std::vector<std::vector<int>> orientations(const Mesh& before, const Mesh& level
 
 }  // namespace
 
-void look_up_attributes(const Mesh& original, const Mesh& before, Mesh& level) {
-  if (level.attributes.empty()) return;
-  const SeamedSurface surface(original);
-  const WedgeFinder finder(original);
-  std::vector<std::vector<float>> values;
-  for (const Attribute& a : original.attributes) values.push_back(stays(a) ? std::vector<float>() : finite_values(a));
+struct AttributeLookup::Impl {
+  explicit Impl(const Mesh& mesh) : original(mesh), surface(mesh), finder(mesh) {
+    for (const Attribute& a : mesh.attributes) values.push_back(stays(a) ? std::vector<float>() : finite_values(a));
+  }
+
+  const Mesh& original;
+  SeamedSurface surface;
+  WedgeFinder finder;
+  std::vector<std::vector<float>> values;  // by attribute; empty where it stays with its vertex
+};
+
+AttributeLookup::AttributeLookup(const Mesh& original)
+    : impl_(original.attributes.empty() ? nullptr : std::make_unique<Impl>(original)) {}
+AttributeLookup::~AttributeLookup() = default;
+
+void AttributeLookup::look_up(const Mesh& before, Mesh& level) const {
+  if (impl_ == nullptr) return;
   for (Index w = 0; w < level.wedge_count(); ++w) {
     const Index v = level.wedge_vertex[w];
     if (level.positions[v] == before.positions[v]) continue;
-    const Index source = finder.find(before, w);
+    const Index source = impl_->finder.find(before, w);
     if (source == kNoIndex) continue;
-    const SurfacePlace place = surface.nearest_from(source, Vec3(level.positions[v]));
+    const SurfacePlace place = impl_->surface.nearest_from(source, Vec3(level.positions[v]));
     for (std::size_t i = 0; i < level.attributes.size() && place.face != kNoIndex; ++i)
-      if (!values[i].empty()) blend(original, values[i], place, level.attributes[i], w);
+      if (!impl_->values[i].empty()) blend(impl_->original, impl_->values[i], place, level.attributes[i], w);
   }
   const std::vector<std::vector<int>> signs = orientations(before, level);
   while (put_back_turned(before, signs, level)) {

@@ -124,21 +124,33 @@ class EdgeTurner {
   }
 
   bool is_nearer() const {
+    double before = 0;
+    for_samples([&](const SurfaceSample& sample) {
+      before += sample.weight * norm_.error(sample.squared_distance);
+      return true;
+    });
     const Quad& q = quads_.front();
     const Triangle first = triangle(q.a, q.d, q.c);
     const Triangle second = triangle(q.d, q.b, q.c);
-    double before = 0;
+    const double enough = kGain * before;
     double after = 0;
-    const auto add = [&](const SurfaceSample& sample) {
-      before += sample.weight * norm_.error(sample.squared_distance);
-      const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
-      const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
-      after += sample.weight * norm_.error(std::min(near_first, near_second));
-    };
+    return for_samples([&](const SurfaceSample& sample) {
+             const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
+             const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
+             after += sample.weight * norm_.error(std::min(near_first, near_second));
+             return after < enough;
+           }) &&
+           after < enough;
+  }
+
+  /// Visits the samples on the edge's faces until `visit` returns false; returns whether it never did.
+  template <class Visit>
+  bool for_samples(const Visit& visit) const {
     for (const Quad& layer : quads_)
       for (const Index face : layer.face)
-        for (const Index i : samples_of_face_[face]) add(samples_[i]);
-    return after < kGain * before;
+        for (const Index i : samples_of_face_[face])
+          if (!visit(samples_[i])) return false;
+    return true;
   }
 
   bool is_let_pass(const Quad& q) const {

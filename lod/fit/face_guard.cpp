@@ -99,15 +99,28 @@ OriginalGuard::Corners OriginalGuard::corners_of(const Mesh& level, Index face, 
           Vec3(positions[level.corner_vertex(3 * face + 2)])};
 }
 
+/// Walks to the original's nearest point, and searches for it where none was known near there, or the one found is out
+/// of reach: that may lie on the way to a nearer one.
+OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) const {
+  if (near != kNoIndex) {
+    const SurfaceWalk::Place place = walk_.nearest_from(point, near);
+    const double distance = std::sqrt(place.squared_distance);
+    if (distance <= reach_) return {place.face, distance};
+    near = place.face;
+  }
+  const SurfaceIndex::Hit hit = index_.nearest(point, std::numeric_limits<double>::infinity(), near);
+  return {hit.face, hit.distance};
+}
+
 /// `near` is a face of the original near there, if known.
 OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near) const {
   const auto& [a, b, c] = corners;
   Standing result{corners, 0, -1, near, {}};
   const auto visit = [&](const Vec3& point) {
-    const SurfaceIndex::Hit hit = index_.nearest(point, std::numeric_limits<double>::infinity(), result.near);
-    result.distance = std::max(result.distance, hit.distance);
-    result.near = hit.face;
-    return hit.distance;
+    const Nearest found = nearest(point, result.near);
+    result.distance = std::max(result.distance, found.distance);
+    result.near = found.face;
+    return found.distance;
   };
   for (const Vec3& corner : corners) visit(corner);
   const Vec3 normal = normalized(cross(b - a, c - a));

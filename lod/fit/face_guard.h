@@ -7,6 +7,7 @@
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/surface_index.h>
 
+#include "distance/surface_walk.h"
 #include "fit/fit_samples.h"
 
 namespace lodestone::detail {
@@ -22,8 +23,9 @@ void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions);
 /// have become the nearer one meanwhile is let pass.
 class OriginalGuard {
  public:
-  /// `original` outlives the guard.
-  explicit OriginalGuard(const Mesh& original) : original_(original), index_(original) {}
+  /// `index` and `walk` are the original's; all outlive the guard.
+  OriginalGuard(const Mesh& original, const SurfaceIndex& index, const SurfaceWalk& walk)
+      : original_(original), index_(index), walk_(walk) {}
 
   /// How a level's faces lie to the original, by some points of each.
   struct Survey {
@@ -47,6 +49,11 @@ class OriginalGuard {
  private:
   static constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
 
+  struct Nearest {
+    Index face;
+    double distance;
+  };
+
   /// How a face stood to the original when it was last looked at.
   struct Standing {
     Corners corners;
@@ -58,10 +65,12 @@ class OriginalGuard {
 
   static Corners corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions);
   Standing look_at(const Corners& corners, Index near) const;
+  Nearest nearest(const Vec3& point, Index near) const;
   bool is_surely_fine(const Standing& last, const Corners& corners) const;
 
   const Mesh& original_;
-  SurfaceIndex index_;
+  const SurfaceIndex& index_;
+  const SurfaceWalk& walk_;
   double reach_ = std::numeric_limits<double>::infinity();
   std::vector<Standing> standing_;  // by face
 };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
@@ -18,12 +19,15 @@ struct SurfaceSample {
   std::array<double, 3> weights{};
   double squared_distance = 0;
 
+  /// Takes a point of a face, given by the weights of its corners, for its place.
+  void place_at(Index on_face, const Barycentric& point) {
+    face = on_face;
+    weights = point.weights;
+    squared_distance = point.squared_distance;
+  }
   /// Takes the nearest point of a face for its place.
   void place_on(const Mesh& level, Index on_face) {
-    face = on_face;
-    const Barycentric nearest = nearest_weights(position, triangle_of(level, on_face));
-    weights = nearest.weights;
-    squared_distance = nearest.squared_distance;
+    place_at(on_face, nearest_weights(position, triangle_of(level, on_face)));
   }
 };
 
@@ -40,10 +44,11 @@ struct SampleNorm {
   double softened(double squared_distance) const { return std::sqrt(squared_distance + softening * softening); }
 };
 
-/// Points of the original: its vertices and its faces' centroids, or an even choice of about `most` of them.
+/// Points of the original: its vertices and its faces' centroids, or an even choice of about `most` of them, in the
+/// order of the faces given, so that those that follow each other lie together if these do.
 class SurfaceSamples {
  public:
-  SurfaceSamples(const Mesh& original, std::size_t most);
+  SurfaceSamples(const Mesh& original, std::span<const Index> face_order, std::size_t most);
   std::vector<SurfaceSample>& all() { return samples_; }
   const std::vector<SurfaceSample>& all() const { return samples_; }
 

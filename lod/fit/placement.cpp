@@ -11,13 +11,18 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <lodestone/core/detail/position_index.h>
 #include <lodestone/lod/surface_index.h>
 
+#include "distance/face_order.h"
+#include "distance/surface_walk.h"
 #include "distance/triangle.h"
 #include "distance/triple_table.h"
 #include "fit/attribute_lookup.h"
@@ -32,27 +37,50 @@ namespace {
 
 using namespace detail;
 
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr int kSolverSteps = 60;
-constexpr double kStay = 0.02;                // how much a vertex wants to stay, of the weight of its samples
-constexpr double kCornerStay = 1e6;           // the same where lines end or meet
-constexpr double kAlong = 0.05;               // what distance along the surface or line counts, of distance from it
-constexpr double kLineWeight = 2;             // of lines against surfaces, at equal length
-constexpr double kRoam = 1.25;                // how far out of the original's box, of the rms distance around a vertex
-constexpr std::size_t kFewSamples = 100'000;  // small levels take a few more iterations in no time
+constexpr double kStay = 0.02;       // how much a vertex wants to stay, of the weight of its samples
+constexpr double kCornerStay = 1e6;  // the same where lines end or meet
+constexpr double kAlong = 0.05;      // what distance along the surface or line counts, of distance from it
+constexpr double kLineWeight = 2;    // of lines against surfaces, at equal length
+constexpr double kRoam = 1.25;       // how far out of the original's box, of the rms distance around a vertex
 
 // Many faces of a level that keeps so large a share of them are the original's own. Sums of distances leave them where
 // they are, sums of squares do not; what is nearer than a share of the rms distance counts by its square there, too.
 constexpr double kFineShare = 0.3;
 constexpr double kSoftening = 0.1;
 
-// How many iterations a level is worth. Edges are turned in the first ones, and the vertices follow.
+// What a level is worth, by effort. Edges are turned in the first iterations, and the vertices follow. Large levels
+// settle sooner, and each iteration of theirs costs more: where there are more than so many samples there are fewer.
 struct Effort {
-  int times;       // as many as asked for, at most
-  int turning;     // of them with edges turned
-  double settled;  // of the sum before: less gain than this is not worth another
+  int moves;                     // of all vertices, at most
+  int turning;                   // of them with edges turned
+  double settled;                // of the sum before: less gain than this is not worth another
+  std::size_t samples_per_face;  // of the level, at most: where the original has more, some are left out
+  int search_every;              // so many iterations, in place of following samples; 0: never again
 };
-constexpr Effort kEffort = {1, 3, 0.985};
-constexpr Effort kEffortForFew = {6, 12, 0.999};
+constexpr std::array<Effort, kMostEffort> kEfforts = {{{1, 1, 0.9, 8, 0},
+                                                       {2, 1, 0.9, 10, 0},
+                                                       {4, 3, 0.97, 15, 0},
+                                                       {8, 5, 0.98, 20, 5},
+                                                       {24, 8, 0.995, 30, 5},
+                                                       {48, 12, 0.998, 30, 5},
+                                                       {48, 12, 0.999, 60, 4},
+                                                       {48, 12, 0.999, 60, 3},
+                                                       {72, 12, 0.9995, 60, 3}}};
+constexpr std::size_t kFewSamples = 100'000;
+constexpr int kFewerMoves = 3;
+constexpr int kFewerTurning = 3;
+constexpr double kSettledSooner = 3;
+
+Effort effort_for(int wanted, std::size_t sample_count) {
+  Effort effort = kEfforts[static_cast<std::size_t>(std::clamp(wanted, kLeastEffort, kMostEffort) - kLeastEffort)];
+  if (sample_count <= kFewSamples) return effort;
+  effort.moves = std::max(effort.moves / kFewerMoves, 1);
+  effort.turning = std::max(effort.turning / kFewerTurning, 1);
+  effort.settled = 1 - kSettledSooner * (1 - effort.settled);
+  return effort;
+}
 
 // At so many points of the original, spread over its faces, a fit is compared with what was there before; at least and
 // at most so many of each face.
@@ -90,20 +118,49 @@ bool has_layers(const std::vector<MeshEdge>& edges) {
   return std::any_of(edges.begin(), edges.end(), [](const MeshEdge& edge) { return !edge.layers.empty(); });
 }
 
+/// A mesh's faces, such that those that follow each other lie together.
+std::vector<Index> faces_in_order(const Mesh& mesh) {
+  std::vector<Triangle> triangles(mesh.face_count());
+  for (Index f = 0; f < triangles.size(); ++f) triangles[f] = triangle_of(mesh, f);
+  return compact_order(triangles);
+}
+
+/// The original, and what all fits to it need.
+struct Original {
+  explicit Original(const Mesh& given)
+      : mesh(given),
+        box(bounding_box(given)),
+        face_order(faces_in_order(given)),
+        lines(given),
+        layers(has_layers(list_edges(given)) ? std::make_optional(without_layers(given)) : std::nullopt),
+        skin(layers ? *layers : given),
+        skin_index(skin),
+        skin_walk(skin) {}
+
+  const Mesh& mesh;
+  Box box;
+  std::vector<Index> face_order;
+  LineSamples lines;
+  std::optional<Mesh> layers;
+  const Mesh& skin;  // as the guard sees it, where sheets lie on one another
+  SurfaceIndex skin_index;
+  SurfaceWalk skin_walk;
+};
+
 class Fitting {
  public:
-  Fitting(const Mesh& original, Mesh& level, const PlacementOptions& options)
+  Fitting(const Original& original, Mesh& level, const PlacementOptions& options)
       : original_(original),
         level_(level),
-        options_(options),
-        is_fine_(static_cast<double>(level.face_count()) >= kFineShare * static_cast<double>(original.face_count())),
+        is_fine_(static_cast<double>(level.face_count()) >=
+                 kFineShare * static_cast<double>(original.mesh.face_count())),
         edges_(list_edges(level)),
-        skin_(has_layers(edges_) ? without_layers(original) : Mesh{}),
-        guard_(has_layers(edges_) ? skin_ : original),
-        fixed_(find_fixed(original, level, options.fixed)),
-        box_(bounding_box(original)),
-        samples_(original, options.samples_per_face * level.face_count()),
-        lines_(original) {
+        guard_(original.skin, original.skin_index, original.skin_walk),
+        fixed_(find_fixed(original.mesh, level, options.fixed)),
+        samples_(original.mesh, original.face_order,
+                 effort_for(options.effort, 0).samples_per_face * level.face_count()),
+        effort_(effort_for(options.effort, samples_.all().size())),
+        near_line_(original.lines.all().size(), kNoIndex) {
     classify();
   }
 
@@ -111,31 +168,32 @@ class Fitting {
 
  private:
   void classify();
-  void assign();
+  void search();
+  void follow();
   void fence();
   void choose_norm();
   double error() const;
   void turn_edges();
-  void assemble(SparseSystem& system) const;
-  void add_lines(SparseSystem& system) const;
+  void assemble(SparseSystem& system);
+  void add_faces(SparseSystem& system) const;
+  void add_lines(SparseSystem& system);
   void move();
   double forward_error() const;
   void keep_in_box(std::vector<Vec3>& positions) const;
 
-  const Mesh& original_;
+  const Original& original_;
   Mesh& level_;
-  const PlacementOptions& options_;
   bool is_fine_;
   std::vector<MeshEdge> edges_;
-  Mesh skin_;  // the original as the guard sees it, where sheets lie on one another
+  std::optional<SurfaceWalk> walk_;     // of the faces as they are now
+  std::optional<SparseSystem> system_;  // the same
   OriginalGuard guard_;
   std::vector<std::uint8_t> fixed_;  // by vertex
-  Box box_;                          // of the original
   std::vector<double> roam_;         // by vertex: how far it may leave the box
   SampleNorm norm_;
   SurfaceSamples samples_;
-  LineSamples lines_;
-  std::vector<Index> corner_vertex_;
+  Effort effort_;
+  std::vector<Index> near_line_;         // by sample of a line: the level's line that it was last nearest to
   std::vector<std::uint8_t> line_ends_;  // by vertex: constrained edges, at most 255
 };
 
@@ -146,14 +204,23 @@ void Fitting::classify() {
       if (edge.constrained && line_ends_[v] < 255) ++line_ends_[v];
 }
 
-/// Finds the face nearest to each sample.
-void Fitting::assign() {
+/// Finds the face nearest to each sample, wherever that is.
+void Fitting::search() {
   const SurfaceIndex surface(level_);
   Index last = kNoIndex;  // Samples that follow each other are mostly neighbours.
   for (SurfaceSample& sample : samples_.all()) {
     const Index hint = sample.face != kNoIndex ? sample.face : last;
-    last = surface.nearest(sample.position, std::numeric_limits<double>::infinity(), hint).face;
+    last = surface.nearest(sample.position, kUnlimited, hint).face;
     sample.place_on(level_, last);
+  }
+}
+
+/// Follows the samples over the surface to where it is nearest to them now.
+void Fitting::follow() {
+  walk_ ? walk_->update(level_) : void(walk_.emplace(level_));
+  for (SurfaceSample& sample : samples_.all()) {
+    const SurfaceWalk::Place place = walk_->nearest_from(sample.position, sample.face);
+    sample.place_at(place.face, weights_at(place.point, triangle_of(level_, place.face), place.squared_distance));
   }
 }
 
@@ -174,7 +241,7 @@ void Fitting::fence() {
 
 void Fitting::keep_in_box(std::vector<Vec3>& positions) const {
   for (Index v = 0; v < positions.size(); ++v) {
-    const Vec3 roam(roam_[v], roam_[v], roam_[v]), low = box_.low - roam, high = box_.high + roam;
+    const Vec3 roam(roam_[v], roam_[v], roam_[v]), low = original_.box.low - roam, high = original_.box.high + roam;
     Vec3& p = positions[v];
     p = {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y), std::clamp(p.z, low.z, high.z)};
   }
@@ -196,17 +263,15 @@ double Fitting::error() const {
 }
 
 void Fitting::turn_edges() {
-  if (detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_, fixed_) > 0) edges_ = list_edges(level_);
+  if (detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_, fixed_) == 0) return;
+  edges_ = list_edges(level_);
+  walk_.reset();
+  system_.reset();
 }
 
-void Fitting::assemble(SparseSystem& system) const {
+void Fitting::assemble(SparseSystem& system) {
   system.clear();
-  for (const SurfaceSample& sample : samples_.all()) {
-    const Vec3 normal = normalized(area_vector(level_, sample.face));
-    const double weight = sample.weight * norm_.weight(sample.squared_distance);
-    const Symmetric3 metric = Symmetric3::identity(kAlong * weight) + Symmetric3::outer(normal, (1 - kAlong) * weight);
-    system.add(&corner_vertex_[3 * std::size_t{sample.face}], sample.weights.data(), 3, sample.position, metric);
-  }
+  add_faces(system);
   add_lines(system);
   const double one = 1;
   for (Index v = 0; v < level_.vertex_count(); ++v) {
@@ -216,8 +281,32 @@ void Fitting::assemble(SparseSystem& system) const {
   }
 }
 
+/// Draws faces to the samples that are nearest to them. All samples of a face look along its one normal.
+void Fitting::add_faces(SparseSystem& system) const {
+  struct Sums {
+    std::array<double, 6> products{};
+    std::array<Vec3, 3> pulls{};
+  };
+  std::vector<Sums> sums(level_.face_count());
+  for (const SurfaceSample& sample : samples_.all()) {
+    Sums& sum = sums[sample.face];
+    const double weight = sample.weight * norm_.weight(sample.squared_distance);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double share = weight * sample.weights[k];
+      sum.products[k] += share * sample.weights[k];
+      sum.products[3 + k] += share * sample.weights[(k + 1) % 3];
+      sum.pulls[k] += sample.position * share;
+    }
+  }
+  for (Index f = 0; f < sums.size(); ++f) {
+    const Vec3 normal = normalized(area_vector(level_, f));
+    system.add_face(f, sums[f].products, sums[f].pulls,
+                    Symmetric3::identity(kAlong) + Symmetric3::outer(normal, 1 - kAlong));
+  }
+}
+
 /// Draws the level's lines to the original's. A sample of length l stands for an area of l times the edge it lies on.
-void Fitting::add_lines(SparseSystem& system) const {
+void Fitting::add_lines(SparseSystem& system) {
   Mesh segments;
   segments.positions = level_.positions;
   std::vector<const MeshEdge*> of_face;
@@ -230,8 +319,11 @@ void Fitting::add_lines(SparseSystem& system) const {
   segments.wedge_vertex.resize(segments.positions.size());
   for (Index v = 0; v < segments.wedge_vertex.size(); ++v) segments.wedge_vertex[v] = v;
   const SurfaceIndex index(segments);
-  for (const LineSample& sample : lines_.all()) {
-    const SurfaceIndex::Hit hit = index.nearest(sample.position, std::numeric_limits<double>::infinity());
+  const std::vector<LineSample>& samples = original_.lines.all();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const LineSample& sample = samples[i];
+    const SurfaceIndex::Hit hit = index.nearest(sample.position, kUnlimited, near_line_[i]);
+    near_line_[i] = hit.face;
     const MeshEdge& edge = *of_face[hit.face];
     const Vec3 a(level_.positions[edge.vertices[0]]);
     const Vec3 b(level_.positions[edge.vertices[1]]);
@@ -247,13 +339,11 @@ void Fitting::add_lines(SparseSystem& system) const {
 }
 
 void Fitting::move() {
-  corner_vertex_.resize(level_.corner_wedge.size());
-  for (Index c = 0; c < corner_vertex_.size(); ++c) corner_vertex_[c] = level_.corner_vertex(c);
-  SparseSystem system(level_.vertex_count(), corner_vertex_);
-  assemble(system);
+  if (!system_) system_.emplace(level_);
+  assemble(*system_);
   std::vector<Vec3> moved;
   for (const Vec3f& p : level_.positions) moved.emplace_back(p);
-  system.solve(moved, kSolverSteps);
+  system_->solve(moved, kSolverSteps);
   keep_in_box(moved);
   std::vector<Vec3f> positions;
   for (const Vec3& p : moved)
@@ -269,16 +359,17 @@ void Fitting::move() {
 /// The sum again, over points inside the original's faces that the fit does not go by: these stand for their areas even
 /// where large faces meet small ones at an angle.
 double Fitting::forward_error() const {
+  const Mesh& original = original_.mesh;
   const SurfaceIndex surface(level_);
-  const std::size_t count = std::clamp(kCheckedPoints / original_.face_count(), kFewestOfFace, kMostOfFace);
+  const std::size_t count = std::clamp(kCheckedPoints / original.face_count(), kFewestOfFace, kMostOfFace);
   double sum = 0;
   Index near = kNoIndex;
-  for (Index f = 0; f < original_.face_count(); ++f) {
-    const double share = 0.5 * length(area_vector(original_, f)) / static_cast<double>(count);
+  for (const Index f : original_.face_order) {
+    const double share = 0.5 * length(area_vector(original, f)) / static_cast<double>(count);
     for (std::size_t k = 0; k < count; ++k) {
-      const Vec3 point = point_on_triangle(original_.corner_position(3 * f), original_.corner_position(3 * f + 1),
-                                           original_.corner_position(3 * f + 2), k + 1);
-      const SurfaceIndex::Hit hit = surface.nearest(point, std::numeric_limits<double>::infinity(), near);
+      const Vec3 point = point_on_triangle(original.corner_position(3 * f), original.corner_position(3 * f + 1),
+                                           original.corner_position(3 * f + 2), k + 1);
+      const SurfaceIndex::Hit hit = surface.nearest(point, kUnlimited, near);
       near = hit.face;
       sum += share * norm_.error(hit.distance * hit.distance);
     }
@@ -287,28 +378,29 @@ double Fitting::forward_error() const {
 }
 
 void Fitting::run() {
-  assign();
+  search();
   choose_norm();
   fence();
-  const OriginalGuard::Survey survey = guard_.survey(level_, norm_);
-  double reach = survey.farthest;
+  double reach = 0;
   for (const SurfaceSample& sample : samples_.all()) reach = std::max(reach, std::sqrt(sample.squared_distance));
   guard_.set_reach(reach);
+  const OriginalGuard::Survey survey = guard_.survey(level_, norm_);
+  guard_.set_reach(std::max(reach, survey.farthest));
   const Mesh unfitted = level_;
   const double error_of_unfitted = is_fine_ ? forward_error() + survey.error : 0;
   double best = error();
   Mesh best_level = level_;
-  const Effort effort = samples_.all().size() <= kFewSamples ? kEffortForFew : kEffort;
-  for (int i = 0; i < effort.times * options_.iterations; ++i) {
-    if (i < effort.turning) turn_edges();
+  for (int i = 0; i < effort_.moves; ++i) {
+    if (i < effort_.turning) turn_edges();
     move();
-    assign();
+    const bool looks_everywhere = effort_.search_every > 0 && (i + 1) % effort_.search_every == 0;
+    looks_everywhere ? search() : follow();
     const double now = error();
     if (!(now < best)) break;
-    const bool settled = now > effort.settled * best;
+    const bool settled = now > effort_.settled * best;
     best = now;
     best_level = level_;
-    if (settled && i + 1 >= effort.turning) break;
+    if (settled && i + 1 >= effort_.turning) break;
   }
   level_ = std::move(best_level);
   // Where most faces have no error yet there is little to gain, and the samples may mislead.
@@ -324,13 +416,29 @@ Mesh compacted(const Mesh& mesh) {
 
 }  // namespace
 
-Mesh optimise_placement(const Mesh& original, const Mesh& level, const PlacementOptions& options) {
+struct LevelFitter::Impl {
+  explicit Impl(const Mesh& mesh) : original(mesh), attributes(mesh) {}
+
+  Original original;
+  AttributeLookup attributes;
+};
+
+LevelFitter::LevelFitter(const Mesh& original) : impl_(std::make_unique<Impl>(original)) {}
+LevelFitter::~LevelFitter() = default;
+LevelFitter::LevelFitter(LevelFitter&&) noexcept = default;
+LevelFitter& LevelFitter::operator=(LevelFitter&&) noexcept = default;
+
+Mesh LevelFitter::fit(const Mesh& level, const PlacementOptions& options) const {
   Mesh fitted = compacted(level);
-  if (fitted.face_count() == 0 || original.face_count() == 0) return fitted;
+  if (fitted.face_count() == 0 || impl_->original.mesh.face_count() == 0) return fitted;
   const Mesh before = fitted;
-  Fitting(original, fitted, options).run();
-  look_up_attributes(original, before, fitted);
+  Fitting(impl_->original, fitted, options).run();
+  impl_->attributes.look_up(before, fitted);
   return fitted;
+}
+
+Mesh optimise_placement(const Mesh& original, const Mesh& level, const PlacementOptions& options) {
+  return LevelFitter(original).fit(level, options);
 }
 
 }  // namespace lodestone

@@ -31,9 +31,10 @@ Symmetric3 inverse(const Symmetric3& m) {
 
 }  // namespace
 
-SparseSystem::SparseSystem(std::size_t vertex_count, std::span<const Index> corner_vertex) {
-  const std::vector<HalfEdge> halves = sorted_edges(corner_vertex.size(), [&](Index c) { return corner_vertex[c]; });
-  row_begin_.assign(vertex_count + 1, 0);
+SparseSystem::SparseSystem(const Mesh& mesh) : corner_vertex_(mesh.corner_wedge.size()) {
+  for (Index c = 0; c < corner_vertex_.size(); ++c) corner_vertex_[c] = mesh.corner_vertex(c);
+  const std::vector<HalfEdge> halves = sorted_edges(mesh);
+  row_begin_.assign(mesh.vertex_count() + 1, 0);
   for_each_edge(halves, [&](Edge edge) {
     ++row_begin_[edge[0].low()];
     if (!edge[0].is_loop()) ++row_begin_[edge[0].high()];
@@ -46,6 +47,11 @@ SparseSystem::SparseSystem(std::size_t vertex_count, std::span<const Index> corn
     column_[end[edge[0].low()]++] = edge[0].high();
     if (!edge[0].is_loop()) column_[end[edge[0].high()]++] = edge[0].low();
   });
+  pair_.resize(corner_vertex_.size());
+  for (Index c = 0; c < corner_vertex_.size(); ++c) {
+    const Index from = corner_vertex_[c], to = corner_vertex_[next_corner(c)];
+    pair_[c] = {number_of(from, to), number_of(to, from)};
+  }
   clear();
 }
 
@@ -55,10 +61,21 @@ void SparseSystem::clear() {
   right_.assign(row_begin_.size() - 1, Vec3{});
 }
 
-Symmetric3& SparseSystem::entry(Index row, Index column) {
+Index SparseSystem::number_of(Index row, Index column) const {
   const auto begin = column_.begin() + row_begin_[row];
   const auto end = column_.begin() + row_begin_[row + 1];
-  return value_[static_cast<std::size_t>(std::lower_bound(begin, end, column) - column_.begin())];
+  return static_cast<Index>(std::lower_bound(begin, end, column) - column_.begin());
+}
+
+void SparseSystem::add_face(Index face, const std::array<double, 6>& products, const std::array<Vec3, 3>& pulls,
+                            const Symmetric3& metric) {
+  for (Index k = 0; k < 3; ++k) {
+    const Index corner = 3 * face + k;
+    diagonal_[corner_vertex_[corner]].add(metric, products[k]);
+    right_[corner_vertex_[corner]] += metric * pulls[k];
+    if (products[3 + k] == 0) continue;
+    for (const Index entry : pair_[corner]) value_[entry].add(metric, products[3 + k]);
+  }
 }
 
 void SparseSystem::add(const Index* vertices, const double* weights, std::size_t count, const Vec3& target,

@@ -1,12 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include <lodestone/core/detail/symmetric3.h>
-#include <lodestone/core/ids.h>
-#include <lodestone/core/vec.h>
+#include <lodestone/core/mesh.h>
 
 namespace lodestone::detail {
 
@@ -14,14 +13,18 @@ namespace lodestone::detail {
 /// for pairs of vertices that share a face.
 class SparseSystem {
  public:
-  /// `corner_vertex`: three vertices for each face.
-  SparseSystem(std::size_t vertex_count, std::span<const Index> corner_vertex);
+  /// Takes the mesh's faces as they are now.
+  explicit SparseSystem(const Mesh& mesh);
 
   /// Sets all entries and right-hand sides to zero.
   void clear();
   /// Adds rᵀ·metric·r with r = Σ w[k]·x[v[k]] − target to what is minimised; 1 to 3 vertices that share a face.
   void add(const Index* vertices, const double* weights, std::size_t count, const Vec3& target,
            const Symmetric3& metric);
+  /// Adds the same of many r over one face at once: `products` holds the sums of w[0]², w[1]², w[2]², w[0]·w[1],
+  /// w[1]·w[2] and w[2]·w[0], `pulls` those of w[k]·target.
+  void add_face(Index face, const std::array<double, 6>& products, const std::array<Vec3, 3>& pulls,
+                const Symmetric3& metric);
   /// The mean of a vertex's three diagonal entries.
   double stiffness(Index vertex) const { return diagonal_[vertex].trace() / 3; }
 
@@ -29,9 +32,12 @@ class SparseSystem {
   void solve(std::vector<Vec3>& x, int max_steps) const;
 
  private:
-  Symmetric3& entry(Index row, Index column);
+  Index number_of(Index row, Index column) const;
+  Symmetric3& entry(Index row, Index column) { return value_[number_of(row, column)]; }
   void multiply(const std::vector<Vec3>& x, std::vector<Vec3>& out) const;
 
+  std::vector<Index> corner_vertex_;
+  std::vector<std::array<Index, 2>> pair_;  // by corner: the entries of its vertex with the next one, both ways
   std::vector<Index> row_begin_;
   std::vector<Index> column_;
   std::vector<Symmetric3> value_;

@@ -18,20 +18,25 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinCosine = 0.2;       // of the angle that faces may turn, at first
-constexpr double kMinShape = 1e-3;       // a new face's height over its longest edge, where there are no slivers yet
-constexpr double kLeastHeight = 4;       // of a face whose normal says something, over the rounding of coordinates
-constexpr double kFreeDistance = 8;      // what rounding of coordinates, and of distances from them, may pretend
-constexpr double kSameShape = 1e-6;      // relative; shapes that differ by less are the same
-constexpr std::size_t kFullyRanked = 3;  // triangulations, by swept volume, whose distances are measured
-constexpr double kForgiven = 0.7;        // share of the distances there were before that a removal is not charged for
-constexpr double kLeastCharged = 0.02;   // share of the distances after it that it is charged for in any case
-constexpr double kBridgeWeight = 3;      // of new surface where the star had none, against distances of points
-constexpr double kLineWeight = 1.5;      // of a border or crease that moves
-constexpr double kLeastLine = 1.5;       // of its distance, where a border or crease that moves is short
-constexpr double kMaterialWeight = 4;    // of a border between materials that moves: faces change their colour
-constexpr double kSeamWeight = 0.1;      // of a seam that moves: what counts there is the price of the attributes
-constexpr double kTieBreak = 0.2;        // weight of the volume swept, as a length, against a pure curvature error
+constexpr double kMinCosine = 0.2;   // of the angle that faces may turn, at first
+constexpr double kMinShape = 1e-3;   // a new face's height over its longest edge, where there are no slivers yet
+constexpr double kLeastHeight = 4;   // of a face whose normal says something, over the rounding of coordinates
+constexpr double kFreeDistance = 8;  // what rounding of coordinates, and of distances from them, may pretend
+constexpr double kSameShape = 1e-6;  // relative; shapes that differ by less are the same
+// Triangulations, by swept volume, whose distances are measured, from which effort on.
+constexpr int kMeasuresDistances = 3;
+constexpr int kMeasuresSome = 5;
+constexpr int kMeasuresMore = 8;
+constexpr std::size_t kSome = 3;
+constexpr std::size_t kMore = 8;
+constexpr double kForgiven = 0.7;       // share of the distances there were before that a removal is not charged for
+constexpr double kLeastCharged = 0.02;  // share of the distances after it that it is charged for in any case
+constexpr double kBridgeWeight = 3;     // of new surface where the star had none, against distances of points
+constexpr double kLineWeight = 1.5;     // of a border or crease that moves
+constexpr double kLeastLine = 1.5;      // of its distance, where a border or crease that moves is short
+constexpr double kMaterialWeight = 4;   // of a border between materials that moves: faces change their colour
+constexpr double kSeamWeight = 0.1;     // of a seam that moves: what counts there is the price of the attributes
+constexpr double kTieBreak = 0.2;       // weight of the volume swept, as a length, against a pure curvature error
 constexpr double kMinCurvatureChange = 0.2;  // radians; below it curvature does not separate removals
 
 double squared_longest_edge(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -70,6 +75,8 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
       options_(&options),
       attributes_(state.mesh, options.weights),
       ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
+  measures_distances_ = options.metric == Metric::Hybrid && options.effort >= kMeasuresDistances;
+  fully_ranked_ = options.effort >= kMeasuresMore ? kMore : options.effort >= kMeasuresSome ? kSome : 1;
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
   table_.resize(kMaxSearchedPolygon * (kMaxSearchedPolygon - 1) * (kMaxSearchedPolygon - 2) / 6);
@@ -420,7 +427,7 @@ Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std:
 Verdict RemovalEvaluator::judge_filled(Sector& sector, const SectorPatch& patch) {
   if (sector.size() == 2) return Verdict::Legal;
   reset_triangles(sector.size());
-  if (options_->metric == Metric::Hybrid) gather_points(sector);
+  if (measures_distances_) gather_points(sector);
   return judge(sector, patch.triangles);
 }
 
@@ -536,7 +543,7 @@ Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch, std::uint8_
   if (sector.size() == 2) return Verdict::Legal;
   reset_triangles(sector.size());
   const bool is_hybrid = options_->metric == Metric::Hybrid;
-  if (is_hybrid) gather_points(sector);
+  if (measures_distances_) gather_points(sector);
   if (choice == kNoChoice || rejects(judge(sector, candidate(sector, choice)))) {
     if (const Verdict verdict = list_admissible(sector); rejects(verdict)) return verdict;
     choice = static_cast<std::uint8_t>(is_hybrid ? best_by_distance(sector) : best_by_curvature(sector));
@@ -546,10 +553,12 @@ Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch, std::uint8_
   return Verdict::Legal;
 }
 
-/// Ranks by (V·D)^6 = squared volume · D^6; the curvature's part is left to the order of removals.
+/// Ranks by (V·D)^6 = squared volume · D^6, or by volume alone; the curvature's part is left to the order of removals.
 int RemovalEvaluator::best_by_distance(const Sector& sector) {
-  std::sort(ranked_.begin(), ranked_.end());
-  if (ranked_.size() > kFullyRanked) ranked_.resize(kFullyRanked);
+  const std::size_t count = measures_distances_ ? std::min(fully_ranked_, ranked_.size()) : 1;
+  std::partial_sort(ranked_.begin(), ranked_.begin() + static_cast<std::ptrdiff_t>(count), ranked_.end());
+  ranked_.resize(count);
+  if (count == 1) return ranked_.front().second;
   for (auto& [rank, which] : ranked_) rank *= std::pow(added_squared_distance(sector, candidate(sector, which)), 3);
   return std::min_element(ranked_.begin(), ranked_.end())->second;
 }
@@ -754,15 +763,18 @@ Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
     if (triangles.empty()) continue;
     squared_volume += squared_volume_sum(sector, triangles);
     if (!is_hybrid) continue;
-    if (sectors_.size() > 1) gather_points(sector);
-    squared_distance += added_squared_distance(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
+    if (measures_distances_) {
+      if (sectors_.size() > 1) gather_points(sector);
+      squared_distance += added_squared_distance(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
+    }
     if (!attributes_.empty()) squared_attributes += squared_attribute_difference(sector, triangles);
   }
   add_closing_curvature();
   Evaluation result{Verdict::Legal, 0, largest_change()};
   result.cost = result.curvature_error + tie_break(squared_volume);
   if (!is_hybrid) return result;
-  const double swept = std::sqrt(std::cbrt(std::sqrt(squared_volume)) * std::sqrt(squared_distance));
+  const double volume = std::cbrt(std::sqrt(squared_volume));
+  const double swept = measures_distances_ ? std::sqrt(volume * std::sqrt(squared_distance)) : volume;
   const double moved = swept + line_cost(record.vertex) + std::sqrt(squared_attributes);
   result.cost = hybrid_cost(moved, result.curvature_error);
   return result;

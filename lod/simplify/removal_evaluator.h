@@ -77,6 +77,9 @@ class RemovalEvaluator {
   /// go.
   bool relax_angles(bool beyond);
 
+  /// Whether costs depend on the points that faces carry.
+  bool measures_distances() const { return measures_distances_; }
+
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
   struct Triangle {
@@ -207,6 +210,8 @@ class RemovalEvaluator {
   AttributeCost attributes_;
   Grouping wedges_;  // by vertex; empty without seams
   TurnLimit turn_limit_ = TurnLimit::Acute;
+  bool measures_distances_ = false;
+  std::size_t fully_ranked_ = 1;  // triangulations by the distances of all points
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;

@@ -217,7 +217,8 @@ void Simplifier::remove(const Evaluation& evaluation) {
   for (RemovalRecord& record : removal_) {
     claim_ring(record);
     remove_vertex(state_.connectivity, record);
-    carry_memory(state_, record);
+    if (evaluator_.measures_distances()) carry_points(state_, record);
+    carry_lines(state_, record);
   }
   bounds_.add(removal_);
   builder_.add(removal_, evaluation.curvature_error);

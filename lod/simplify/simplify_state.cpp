@@ -116,7 +116,7 @@ double metric_curvature(const SimplifyOptions& options, const VertexCurvature& c
   return curvature.area > 0 ? value / curvature.area : 0;
 }
 
-void carry_memory(SimplifyState& state, const RemovalRecord& record) {
+void carry_points(SimplifyState& state, const RemovalRecord& record) {
   const Vec3 center(state.mesh.positions[record.vertex]);
   for (const SectorPatch& sector : record.sectors) {
     std::vector<Index> taken = take_points(state.points, sector);
@@ -125,6 +125,9 @@ void carry_memory(SimplifyState& state, const RemovalRecord& record) {
     if (faces.empty()) faces = heirs_of_all(record);
     give_points(state, taken, faces, center);
   }
+}
+
+void carry_lines(SimplifyState& state, const RemovalRecord& record) {
   if (record.sectors.front().shape == SectorShape::Closed) return;
   std::vector<Index> others;
   for (const SectorPatch& sector : record.sectors)

@@ -26,7 +26,10 @@ struct SimplifyState {
 double metric_curvature(const SimplifyOptions& options, const VertexCurvature& curvature);
 
 /// Moves the memory of the removed surface along with a removal that has just been done: the points of the star's
-/// faces, and the removed vertex, to the nearest of the new faces; the lines through it to the edges in their place.
-void carry_memory(SimplifyState& state, const RemovalRecord& record);
+/// faces, and the removed vertex, to the nearest of the new faces.
+void carry_points(SimplifyState& state, const RemovalRecord& record);
+
+/// The same for the lines through the vertex: to the edges in their place.
+void carry_lines(SimplifyState& state, const RemovalRecord& record);
 
 }  // namespace lodestone::detail

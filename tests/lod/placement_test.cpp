@@ -1,9 +1,11 @@
 #include <lodestone/lod/placement.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
+#include <lodestone/core/parallel.h>
 #include <lodestone/lod/attribute_deviation.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/deviation.h>
@@ -245,6 +247,44 @@ TEST_CASE("what is fixed stays bit for bit, and so do faces between fixed vertic
     moved += before == after ? 0 : 1;
   }
   CHECK(moved > 2);
+}
+
+TEST_CASE("a fitter gives for each level what a fit of its own gives, from several threads, too") {
+  const Mesh mesh = mesh_of(torus(48, 32));
+  std::vector<Mesh> levels;
+  for (const double ratio : {0.5, 0.25, 0.1, 0.05}) levels.push_back(level_of(mesh, ratio));
+  const LevelFitter fitter(mesh);
+  std::vector<Mesh> fitted(levels.size());
+  for_each_in_parallel(levels.size(), [&](std::size_t i) { fitted[i] = fitter.fit(levels[i]); });
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const Mesh alone = optimise_placement(mesh, levels[i]);
+    CHECK(fitted[i].positions == alone.positions);
+    CHECK(fitted[i].corner_wedge == alone.corner_wedge);
+  }
+}
+
+TEST_CASE("more effort fits better, and the least is better than none") {
+  double least = 0, usual = 0, best = 0;
+  for (const TriangleSoup& soup : {icosphere(4, 0.01, 5), torus(48, 32), terrain(40, 3)}) {
+    const Mesh mesh = mesh_of(soup);
+    for (const double ratio : {0.3, 0.1}) {
+      const Mesh level = level_of(mesh, ratio);
+      const double unfitted = rms(mesh, level);
+      const auto gain = [&](int effort) {
+        PlacementOptions options;
+        options.effort = effort;
+        return rms(mesh, optimise_placement(mesh, level, options)) / unfitted;
+      };
+      INFO(mesh.face_count() << " faces at " << ratio);
+      const double of_least = gain(kLeastEffort);
+      CHECK(of_least < 1);
+      least += std::log(of_least);
+      usual += std::log(gain(kDefaultEffort));
+      best += std::log(gain(kMostEffort));
+    }
+  }
+  CHECK(usual < least - 0.1);
+  CHECK(best < usual);
 }
 
 TEST_CASE("the same level is fitted to the same bytes") {

@@ -127,4 +127,35 @@ TEST_CASE("the levels a build keeps are those it measured, and any number of thr
   CHECK(files[0].glb == files[1].glb);
 }
 
+TEST_CASE("an effort out of its range is refused with the number") {
+  BuildOptions options;
+  for (const int effort : {0, 10, -1}) {
+    options.effort = effort;
+    const auto built = build_asset(ball_scene(), options);
+    REQUIRE(!built);
+    CHECK(built.error().code == ErrorCode::InvalidArgument);
+    CHECK(built.error().message.find(std::to_string(effort)) != std::string::npos);
+  }
+}
+
+TEST_CASE("each effort makes the levels asked for, with bounds that hold") {
+  const Scene scene = ball_scene();
+  for (const int effort : {kLeastEffort, 2, 4, kDefaultEffort, kMostEffort}) {
+    BuildOptions options;
+    options.effort = effort;
+    options.placement = Placement::Subset;
+    options.keep_levels = true;
+    options.storage.draco = false;
+    const auto built = build_asset(scene, options);
+    REQUIRE(built);
+    INFO("effort " << effort);
+    CHECK(built->met);
+    REQUIRE(built->levels.size() == 5);
+    for (std::size_t i = 1; i < built->levels.size(); ++i) {
+      CHECK(built->levels[i].face_count <= built->levels[i - 1].face_count / 2);
+      CHECK(built->levels[i].deviation.maximum() <= 1.0001 * static_cast<double>(built->levels[i].deviation_bound));
+    }
+  }
+}
+
 }  // namespace lodestone::test

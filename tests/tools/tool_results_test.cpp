@@ -94,6 +94,7 @@ TEST_CASE("the report has its schema's members") {
   CHECK(report["input"]["bounding_box"]["diagonal"].get<double>() > 1);
   CHECK(report["input"]["assembly"]["degenerate_faces"] == 0);
   CHECK(report["input"]["notes"].is_array());
+  CHECK(report["settings"]["effort"] == 5);
   CHECK(report["settings"]["metric"] == "hybrid");
   REQUIRE(report["levels"].size() == 5);
   for (const Json& level : report["levels"]) check_level(level);

@@ -88,6 +88,8 @@ TEST_CASE("wrong usage exits with 1 and says what is wrong") {
       {"build", in, "-o", out, "--levels", "0"},
       {"build", in, "-o", out, "--qp", "31"},
       {"build", in, "-o", out, "--metric", "best"},
+      {"build", in, "-o", out, "--effort", "0"},
+      {"build", in, "-o", out, "--effort", "10"},
       {"build", in, "-o", out, "--report", out},
       {"extract", in, "-o", out},
       {"extract", in, "-o", out, "--faces", "20,10"},

@@ -155,6 +155,9 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   BuildResult result;
   Notes notes(result, observer);
   Stopwatch stopwatch;
+  if (options.effort < kLeastEffort || options.effort > kMostEffort)
+    return fail(ErrorCode::InvalidArgument,
+                text("effort is ", options.effort, ", not from ", kLeastEffort, " to ", kMostEffort));
   LODESTONE_CHECK(check_names(options.importance, scene));
   LODESTONE_CHECK(sort_finest_first(options.targets, scene));
 
@@ -162,8 +165,9 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   report_streams(scene, result);
   result.timings_ms.simplify = stopwatch.lap_ms();
 
-  LevelPlan plan = plan_levels(scene, result.simplified, options);
-  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(scene, result.simplified, plan, options, observer));
+  SceneFitter fitter(scene, result.simplified, options);
+  LevelPlan plan = plan_levels(scene, result.simplified, options, fitter);
+  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(scene, result.simplified, plan, fitter, observer));
   report_plan(scene, plan, levels, result);
   result.timings_ms.levels = stopwatch.lap_ms();
   if (options.strict && !result.met) return result;

@@ -7,6 +7,8 @@
 #include <lodestone/lod/simplify.h>
 #include <lodestone/pipeline/build_asset.h>
 
+#include "pipeline/scene_fitter.h"
+
 namespace lodestone::detail {
 
 /// Which position of each mesh's stream is its level, for all levels.
@@ -28,7 +30,8 @@ bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplifi
 
 /// Finds each mesh's positions: the whole scene, then what answers the targets. What would repeat the level before is
 /// left out.
-LevelPlan plan_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options);
+LevelPlan plan_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options,
+                      SceneFitter& fitter);
 
 /// Sorts targets of one kind: finest first, by what they come to for the whole scene. Errors: InvalidArgument for
 /// several kinds.

@@ -7,7 +7,6 @@
 
 #include "pipeline/build_progress.h"
 #include "pipeline/level_measure.h"
-#include "pipeline/level_mesh.h"
 
 namespace lodestone::detail {
 namespace {
@@ -26,15 +25,15 @@ void state_why(const SceneChoice& choice, std::size_t mesh, AssetLevel& level) {
   level.deviation_beyond = choice.beyond.empty() ? 0 : choice.beyond[mesh];
 }
 
-AssetLevel make_level(const LevelSource& source, const BuildOptions& options) {
+AssetLevel make_level(const LevelSource& source, SceneFitter& fitter) {
   const Index position = source.choice.positions[source.mesh];
   const ProgressiveMesh& progressive = source.simplified.mesh;
   AssetLevel level;
   level.curvature_error = progressive.curvature_error[position];
   state_why(source.choice, source.mesh, level);
   level.mesh = extract_level(progressive, position);
-  if (!fits_levels(source.whole, options) || position == progressive.record_count()) return level;
-  Mesh fitted = fitted_level(source.whole, source.simplified, level.mesh);
+  if (!fitter.fits(source.mesh) || position == progressive.record_count()) return level;
+  Mesh fitted = fitter.fitted(source.mesh, level.mesh);
   const double bound = static_cast<double>(progressive.deviation[position]);
   const bool is_limited = source.choice.target.kind == TargetKind::Error;
   if (!is_limited || lies_within(source.whole.mesh, fitted, bound)) level.mesh = std::move(fitted);
@@ -44,8 +43,7 @@ AssetLevel make_level(const LevelSource& source, const BuildOptions& options) {
 }  // namespace
 
 Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified,
-                                             const LevelPlan& plan, const BuildOptions& options,
-                                             BuildObserver& observer) {
+                                             const LevelPlan& plan, SceneFitter& fitter, BuildObserver& observer) {
   const std::size_t count = plan.level_count();
   std::vector<LeveledMesh> meshes(simplified.size());
   for (LeveledMesh& mesh : meshes) mesh.levels.resize(count);
@@ -55,7 +53,7 @@ Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vect
     if (progress.is_cancelled()) return;
     if (!plan.repeats(mesh, level))
       meshes[mesh].levels[level] =
-          make_level({scene.meshes()[mesh], simplified[mesh], plan.choices[level], mesh}, options);
+          make_level({scene.meshes()[mesh], simplified[mesh], plan.choices[level], mesh}, fitter);
     progress.update(i, 1);
   });
   if (progress.is_cancelled()) return cancelled();

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "pipeline/level_plan.h"
+#include "pipeline/scene_fitter.h"
 
 namespace lodestone::detail {
 
 /// Extracts each mesh's levels from its stream and fits them to the original, unless an error was asked for that only
 /// the stream's level keeps to. Errors: Cancelled.
 Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified,
-                                             const LevelPlan& plan, const BuildOptions& options,
-                                             BuildObserver& observer);
+                                             const LevelPlan& plan, SceneFitter& fitter, BuildObserver& observer);
 
 }  // namespace lodestone::detail

@@ -1,17 +1,17 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include <lodestone/core/effort.h>
 #include <lodestone/core/mesh.h>
 
 namespace lodestone {
 
 /// How much to fit, and what stays.
 struct PlacementOptions {
-  int iterations = 8;                 ///< of fitting, each moves all vertices; up to six times as many of small levels
-  std::size_t samples_per_face = 60;  ///< at most, of the level's faces: where the original has more, some are left out
+  int effort = kDefaultEffort;  ///< how often vertices move, and by how many points of the original: see core/effort.h
   /// One per vertex of the original, or empty: where it is not 0, what lies there stays, bit for bit, and so do the
   /// edges of faces between such vertices.
   std::vector<std::uint8_t> fixed;
@@ -28,5 +28,22 @@ struct PlacementOptions {
 ///
 /// Pre: `level` comes from `original` by removals. Deterministic. Cost: some queries for each of the original's points.
 Mesh optimise_placement(const Mesh& original, const Mesh& level, const PlacementOptions& options = {});
+
+/// The same for several levels of one mesh: makes what all of them need once. Levels may be fitted side by side.
+class LevelFitter {
+ public:
+  /// `original` outlives it. Cost: O(n log n).
+  explicit LevelFitter(const Mesh& original);
+  ~LevelFitter();
+  LevelFitter(LevelFitter&&) noexcept;
+  LevelFitter& operator=(LevelFitter&&) noexcept;
+
+  /// Returns what optimise_placement returns for the level.
+  Mesh fit(const Mesh& level, const PlacementOptions& options = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace lodestone

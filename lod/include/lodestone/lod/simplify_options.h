@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include <lodestone/core/effort.h>
+
 namespace lodestone {
 
 /// What a removal is charged for.
@@ -61,6 +63,9 @@ struct SimplifyOptions {
   bool vanish = false;
   std::vector<float> importance;  ///< one per vertex of the mesh, or empty: multiplies the vertex's cost; 0 or more
   StopCriteria stop;
+  /// See core/effort.h. By the hybrid metric up to 2 the volume swept is charged alone; from 3 on the distances of what
+  /// was removed are, too, of one way to fill a hole at first, of more from 5 and from 8 on. The others know no effort.
+  int effort = kDefaultEffort;
   /// Measure the deviation each time this share of the faces has gone. In between, and everywhere where it is 0, bounds
   /// add up what each removal may have moved: safe, but wider than the truth.
   double measure_step = 0.1;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <lodestone/core/effort.h>
 #include <lodestone/io/asset.h>
 #include <lodestone/lod/simplify_options.h>
 #include <lodestone/pipeline/importance.h>
@@ -24,11 +25,12 @@ enum class FileLayout {
 
 /// What is built of a scene.
 struct BuildOptions {
+  int effort = kDefaultEffort;  ///< 1 … 9, see core/effort.h: of simplifying, of measuring bounds and of fitting levels
   /// The levels after the whole scene, all of one kind; they may come in any order.
   std::vector<LevelTarget> targets = ratio_targets(0.5, 4);
   TargetScope scope = TargetScope::Scene;
-  /// Of every mesh alike. The build itself sets `importance`, `stop`, `measure_step`, `progress` and the reach of
-  /// morph targets.
+  /// Of every mesh alike. The build itself sets `effort`, `importance`, `stop`, `measure_step`, `progress` and
+  /// the reach of morph targets.
   SimplifyOptions simplify;
   Importance importance;
   Placement placement = Placement::Optimised;

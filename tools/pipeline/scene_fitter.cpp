@@ -1,0 +1,22 @@
+#include "pipeline/scene_fitter.h"
+
+namespace lodestone::detail {
+
+SceneFitter::SceneFitter(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options)
+    : scene_(scene), simplified_(simplified), options_(options), slots_(simplified.size()) {}
+
+bool SceneFitter::fits(std::size_t mesh) const {
+  const SceneMesh& whole = scene_.meshes()[mesh];
+  return options_.placement == Placement::Optimised && !whole.skinned && !whole.has_targets;
+}
+
+Mesh SceneFitter::fitted(std::size_t mesh, const Mesh& level) {
+  Slot& slot = slots_[mesh];
+  std::call_once(slot.once, [&] { slot.fitter = std::make_unique<LevelFitter>(scene_.meshes()[mesh].mesh); });
+  PlacementOptions placement;
+  placement.effort = options_.effort;
+  placement.fixed = simplified_[mesh].locked;
+  return slot.fitter->fit(level, placement);
+}
+
+}  // namespace lodestone::detail

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include <lodestone/io/scene.h>
+#include <lodestone/lod/placement.h>
+#include <lodestone/lod/simplify.h>
+#include <lodestone/pipeline/build_options.h>
+
+namespace lodestone::detail {
+
+/// Fits levels of a scene's meshes, from several threads if wanted; prepares a mesh when its first level comes.
+class SceneFitter {
+ public:
+  /// All outlive it.
+  SceneFitter(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options);
+
+  /// Whether a mesh's levels are fitted to it. Vertices of skinned and morphed meshes take their weights and targets
+  /// with them, so those stay where they are.
+  bool fits(std::size_t mesh) const;
+
+  /// Returns a level of a mesh fitted to it, all but the vertices that the options kept.
+  Mesh fitted(std::size_t mesh, const Mesh& level);
+
+ private:
+  struct Slot {
+    std::once_flag once;
+    std::unique_ptr<LevelFitter> fitter;
+  };
+
+  const Scene& scene_;
+  const std::vector<SimplifyResult>& simplified_;
+  const BuildOptions& options_;
+  std::vector<Slot> slots_;  // by mesh
+};
+
+}  // namespace lodestone::detail
