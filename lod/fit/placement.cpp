@@ -217,7 +217,10 @@ void Fitting::search() {
 
 /// Follows the samples over the surface to where it is nearest to them now.
 void Fitting::follow() {
-  walk_ ? walk_->update(level_) : void(walk_.emplace(level_));
+  if (walk_)
+    walk_->update(level_);
+  else
+    walk_.emplace(level_);
   for (SurfaceSample& sample : samples_.all()) {
     const SurfaceWalk::Place place = walk_->nearest_from(sample.position, sample.face);
     sample.place_at(place.face, weights_at(place.point, triangle_of(level_, place.face), place.squared_distance));
@@ -322,7 +325,8 @@ void Fitting::add_lines(SparseSystem& system) {
   const std::vector<LineSample>& samples = original_.lines.all();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const LineSample& sample = samples[i];
-    const SurfaceIndex::Hit hit = index.nearest(sample.position, kUnlimited, near_line_[i]);
+    const Index hint = near_line_[i] < of_face.size() ? near_line_[i] : kNoIndex;
+    const SurfaceIndex::Hit hit = index.nearest(sample.position, kUnlimited, hint);
     near_line_[i] = hit.face;
     const MeshEdge& edge = *of_face[hit.face];
     const Vec3 a(level_.positions[edge.vertices[0]]);
