@@ -218,6 +218,43 @@ TEST_CASE("a model that says what is not so is refused as a file is") {
   }
 }
 
+TEST_CASE("whatever part of a model nests too deep is found") {
+  using Model = tinygltf::Model;
+  using Deep = tinygltf::Value& (*)(Model&);
+  const Deep places[] = {[](Model & m) -> auto& {return m.extensions["X"];
+}
+, [](Model& m) -> auto& { return m.asset.extras; }
+, [](Model& m) -> auto& { return m.accessors.emplace_back().extras; }
+, [](Model& m) -> auto& { return m.animations.emplace_back().samplers.emplace_back().extensions["X"]; }
+, [](Model& m) -> auto& { return m.animations.emplace_back().channels.emplace_back().target_extensions["X"]; }
+, [](Model& m) -> auto& { return m.buffers.emplace_back().extras; }
+, [](Model& m) -> auto& { return m.bufferViews.emplace_back().extras; }
+, [](Model& m) -> auto& { return m.cameras.emplace_back().perspective.extras; }
+, [](Model& m) -> auto& { return m.cameras.emplace_back().orthographic.extensions["X"]; }
+, [](Model& m) -> auto& {
+  m.images.emplace_back().uri = "paint.png";
+  return m.images[0].extras;
+}
+, [](Model& m) -> auto& { return m.lights.emplace_back().spot.extras; }
+, [](Model& m) -> auto& { return m.materials.emplace_back().extensions["X"]; }
+, [](Model& m) -> auto& { return m.materials.emplace_back().pbrMetallicRoughness.baseColorTexture.extras; }
+, [](Model& m) -> auto& { return m.materials.emplace_back().emissiveTexture.extensions["X"]; }
+, [](Model& m) -> auto& { return m.meshes.emplace_back().primitives.emplace_back().extras; }
+, [](Model& m) -> auto& { return m.nodes.emplace_back().extras; }
+, [](Model& m) -> auto& { return m.samplers.emplace_back().extras; }
+, [](Model& m) -> auto& { return m.scenes.emplace_back().extras; }
+, [](Model& m) -> auto& { return m.skins.emplace_back().extensions["X"]; }
+, [](Model& m) -> auto& { return m.textures.emplace_back().extras; }
+,
+};  // namespace lodestone::test
+for (std::size_t i = 0; i < std::size(places); ++i) {
+  CAPTURE(i);
+  Model model;
+  places[i](model) = tinygltf::Value(tinygltf::Value::Object{{"deep", nested(300)}});
+  CHECK_THAT(error_of(model).message, contains("model: extras or extensions nest deeper"));
+}
+}
+
 TEST_CASE("objects without members stay objects") {
   tinygltf::Model model = triangle_model();
   model.nodes.emplace_back();
