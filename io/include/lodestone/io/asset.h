@@ -34,7 +34,7 @@ struct PositionGrid {
 
 /// How a file stores its geometry.
 struct AssetOptions {
-  bool draco = true;
+  bool draco = true;  ///< compress it by KHR_draco_mesh_compression; else plain accessors
   /// 1 to 30, one grid for all levels, and all meshes of a scale. Unset: 14, or what the finest parts of the shape and
   /// `draco_position_error` need; where 23 do not do, positions stay the floats they are. Beyond 24, here or below,
   /// Draco codes no entropy, which would take four bytes for every step of the grid.
@@ -42,6 +42,7 @@ struct AssetOptions {
   /// The farthest that a vertex may move, world units.
   double draco_position_error = std::numeric_limits<double>::infinity();
   std::optional<PositionGrid> draco_position_grid;  ///< in place of a grid of so many bits, fitted to the meshes
+  /// Of each of the two numbers that a normal is stored as.
   int draco_normal_bits = 10;
   int draco_texcoord_bits = 12;  ///< of a texture's width: coordinates beyond it get more
   /// Of tangents' range, of colours' and weights' unit. All other attributes are data, which Draco keeps exactly.

@@ -18,6 +18,7 @@ enum class Placement {
   Subset,     ///< a subset of the original's, as in the stream
 };
 
+/// In how many files the levels go.
 enum class FileLayout {
   OneFile,       ///< all levels in one file, by MSFT_lod
   FilePerLevel,  ///< a file for each level; none has a stream
@@ -28,16 +29,16 @@ struct BuildOptions {
   int effort = kDefaultEffort;  ///< 1 … 9, see core/effort.h: of simplifying, of measuring bounds and of fitting levels
   /// The levels after the whole scene, all of one kind; they may come in any order.
   std::vector<LevelTarget> targets = ratio_targets(0.5, 4);
-  TargetScope scope = TargetScope::Scene;
+  TargetScope scope = TargetScope::Scene;  ///< whether meshes share what targets ask for
   /// Of every mesh alike. The build itself sets `effort`, `importance`, `stop`, `measure_step`, `progress` and
   /// the reach of morph targets.
   SimplifyOptions simplify;
-  Importance importance;
-  Placement placement = Placement::Optimised;
-  FileLayout layout = FileLayout::OneFile;
-  bool stream = true;        ///< write each mesh's removal stream, where there is one file
-  bool strict = false;       ///< stop before anything is encoded where a target cannot be met
-  bool keep_levels = false;  ///< keep the levels as the files have them: see `BuildResult::decoded`
+  Importance importance;                       ///< of materials and nodes, by name
+  Placement placement = Placement::Optimised;  ///< of each level but the first
+  FileLayout layout = FileLayout::OneFile;     ///< one file, or one for each level
+  bool stream = true;                          ///< write each mesh's removal stream, where there is one file
+  bool strict = false;                         ///< stop before anything is encoded where a target cannot be met
+  bool keep_levels = false;                    ///< keep the levels as the files have them: see `BuildResult::decoded`
   /// How it is stored. The build itself sets `keep_decoded` and, where levels are by error, `draco_position_error`.
   /// With a file for each level, level i's `gltf_name` ends in "_LODi".
   AssetOptions storage;

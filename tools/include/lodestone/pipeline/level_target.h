@@ -10,6 +10,7 @@
 
 namespace lodestone {
 
+/// What a target limits.
 enum class TargetKind {
   Faces,    ///< at most so many faces
   Error,    ///< at most so much deviation
@@ -18,7 +19,7 @@ enum class TargetKind {
 
 /// What a level has to keep to.
 struct LevelTarget {
-  TargetKind kind = TargetKind::Faces;
+  TargetKind kind = TargetKind::Faces;  ///< says what `value` is
   double value = 0;       ///< faces, mesh units, or the metric's own unit; a share of the whole if relative
   bool relative = false;  ///< to the full face count (Faces) or to the bounding-box diagonal (Error)
   bool is_wish = false;   ///< of the default series: a level stops before its error leaps
@@ -29,8 +30,8 @@ std::vector<LevelTarget> ratio_targets(double ratio, int count);
 
 /// What relative targets are relative to.
 struct FullSize {
-  std::size_t face_count = 0;
-  double diagonal = 0;
+  std::size_t face_count = 0;  ///< of the whole mesh or scene, as the next
+  double diagonal = 0;         ///< of its box, in its units
 };
 
 /// The level of a progressive mesh that answers a target.
