@@ -19,6 +19,7 @@
 
 #include "grid.h"
 #include "models.h"
+#include "picture.h"
 #include "referee.h"
 #include "report.h"
 #include "simplifier.h"
@@ -38,6 +39,7 @@ struct Options {
   bool grid = false;
   std::vector<std::string> settings;
   std::string readme;
+  std::string picture;
 };
 
 std::string default_data() {
@@ -148,6 +150,61 @@ int compare(const Options& options, const Models& models, const std::vector<doub
   return options.readme.empty() ? 0 : write_figures(options.readme, figures_table(rows, tools));
 }
 
+// A time that something else on the machine disturbs is longer, never shorter.
+constexpr int kTimedRuns = 3;
+
+TimedError timed_error(const Simplifier& tool, const Mesh& mesh, std::size_t faces, const Referee& referee) {
+  TimedError result;
+  for (int run = 0; run < kTimedRuns; ++run) {
+    const std::vector<Level> levels = tool.run(mesh, std::span(&faces, 1));
+    if (run == 0) result.error = referee.judge(levels.front().surface).mean;
+    const double seconds = levels.front().cpu_seconds;
+    result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
+  }
+  return result;
+}
+
+/// Takes a model to its smallest published count: lodestone at each effort, the others once.
+TimedPanel picture_panel(const Model& model, const Options& options) {
+  const std::size_t faces = model.paper_counts.back();
+  TimedPanel panel{model.name + ", " + std::to_string(faces) + " faces", {}};
+  const Referee referee(surface_of(model.mesh), options.samples);
+  for (int effort = kLeastEffort; effort <= kMostEffort; ++effort) {
+    Options at = options;
+    at.effort = effort;
+    const std::vector<Simplifier> tools = chosen_simplifiers(at);
+    panel.series.resize(tools.size());
+    for (std::size_t i = 0; i < tools.size(); ++i) {
+      if (!tools[i].has_effort && effort > kLeastEffort) continue;
+      std::fprintf(stderr, "%s: %s, effort %d\n", model.name.c_str(), tools[i].name.c_str(), effort);
+      panel.series[i].name = tools[i].name;
+      panel.series[i].points.push_back(timed_error(tools[i], model.mesh, faces, referee));
+      if (tools[i].has_effort) panel.series[i].points.back().label = std::to_string(effort);
+    }
+  }
+  return panel;
+}
+
+int draw_picture(const Options& options, const Models& models) {
+  std::vector<TimedPanel> panels;
+  for (const Model& model : models.found)
+    if (!model.paper_counts.empty()) panels.push_back(picture_panel(model, options));
+  if (panels.empty()) {
+    std::fprintf(stderr, "%s: not drawn: none of these models has published counts\n", options.picture.c_str());
+    return 1;
+  }
+  for (const TimedPanel& panel : panels)
+    for (const TimedSeries& series : panel.series)
+      for (const TimedError& point : series.points)
+        std::printf("%s | %s %s | %.3f s | %.4f %%\n", panel.title.c_str(), series.name.c_str(), point.label.c_str(),
+                    point.seconds, point.error);
+  std::ofstream file(options.picture);
+  file << error_time_picture(panels);
+  if (file.flush()) return 0;
+  std::fprintf(stderr, "%s: not writable\n", options.picture.c_str());
+  return 4;
+}
+
 int run_grid_of(const Options& options, const Models& models, const std::vector<double>& ratios) {
   std::vector<Setting> settings;
   for (const auto& text : options.settings.empty() ? default_settings() : options.settings) {
@@ -171,6 +228,7 @@ int run(Options options) {
   std::vector<double> ratios;
   for (const double percent : options.percents) ratios.push_back(percent / 100);
   const Models models = load_models(options.data, options.models);
+  if (!options.picture.empty()) return draw_picture(options, models);
   return options.grid ? run_grid_of(options, models, ratios) : compare(options, models, ratios);
 }
 
@@ -194,6 +252,7 @@ int main(int argc, char** argv) {
   app.add_flag("--fast", options.fast, "10 % and 2 % alone, a tenth of the samples");
   app.add_flag("--check", options.check, "measure what the Metro tool measured, and print both");
   app.add_option("--readme", options.readme, "file whose table between the marker comments is replaced");
+  app.add_option("--picture", options.picture, "SVG file to draw: error against time, lodestone at each effort");
   auto* grid =
       app.add_option("--grid", options.settings, "lodestone alone with each of these settings, e.g. mean,current")
           ->expected(0, 1000);

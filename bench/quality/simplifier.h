@@ -26,6 +26,7 @@ struct Simplifier {
   /// Returns one level for each of `face_counts`, which descend; a level may miss its count.
   /// Pre: `mesh` comes from `assemble` and has no attributes.
   std::function<std::vector<Level>(const Mesh& mesh, std::span<const std::size_t> face_counts)> run;
+  bool has_effort = false;  ///< whether it is one of lodestone's
 };
 
 /// Returns every simplifier this build has; `effort` is lodestone's. The one place where a new one is added to the

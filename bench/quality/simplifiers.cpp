@@ -23,8 +23,8 @@ std::vector<Simplifier> simplifiers(int effort) {
     };
   };
   return {
-      {"levels", "lodestone, levels", false, with_effort(run_lodestone_levels)},
-      {"stream", "lodestone, stream", true, with_effort(run_lodestone_stream)},
+      {"levels", "lodestone, levels", false, with_effort(run_lodestone_levels), true},
+      {"stream", "lodestone, stream", true, with_effort(run_lodestone_stream), true},
       {"lt-end", "Lindstrom–Turk's cost, end points (CGAL, not stock)", true, run_cgal_lindstrom_turk_end_points},
       {"meshopt", "meshoptimizer", true, run_meshoptimizer},
 #ifdef LODESTONE_BENCH_OPENMESH
