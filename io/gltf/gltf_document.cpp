@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
@@ -208,7 +209,7 @@ Result<void> GltfDocument::load_buffers(std::vector<std::byte> binary_chunk, con
     }
     if (uri.empty()) {
       if (i > 0) return fail(ErrorCode::Malformed, where + ": no uri, and only buffer 0 may be the binary chunk");
-      bytes = std::move(binary_chunk);
+      bytes = std::exchange(binary_chunk, {});
     } else if (uri.starts_with("data:")) {
       LODESTONE_TRY(bytes, decode_data_uri(uri, where));
     } else {

@@ -57,8 +57,11 @@ SurfaceSamples::SurfaceSamples(const Mesh& original, std::span<const Index> face
     }
   }
   const std::size_t step = std::max<std::size_t>(1, all.size() / std::max<std::size_t>(1, most));
-  if (step == 1) samples_ = std::move(all);
-  for (std::size_t i = 0; i < all.size(); i += step) samples_.push_back(all[i]);
+  if (step > 1) {
+    for (std::size_t i = 0; i * step < all.size(); ++i) all[i] = all[i * step];
+    all.resize((all.size() + step - 1) / step);
+  }
+  samples_ = std::move(all);
 }
 
 LineSamples::LineSamples(const Mesh& original) {

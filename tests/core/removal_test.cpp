@@ -66,7 +66,8 @@ bool plan_removal(const Connectivity& mesh, Index vertex, Random& random, Remova
 
 }  // namespace
 
-TEST_CASE("after every removal the mesh is manifold and keeps its Euler characteristic, and undoing all gives it back") {
+TEST_CASE(
+    "after every removal the mesh is manifold and keeps its Euler characteristic, and undoing all gives it back") {
   for (const NamedShape& shape : all_shapes()) {
     INFO(shape.name);
     const Mesh mesh = mesh_of(shape.soup);

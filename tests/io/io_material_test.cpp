@@ -108,6 +108,18 @@ std::string ply_square(const std::string& vertex_properties, const std::string& 
          "element face 2\nproperty list uchar int vertex_indices\n" + face_properties + "end_header\n" + body;
 }
 
+/// A text with a colour in place of each @.
+std::string coloured(const std::string& text, const std::string& color) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '@')
+      result += color;
+    else
+      result += c;
+  }
+  return result;
+}
+
 }  // namespace
 
 TEST_CASE("obj: materials come by name, with their numbers and images, byte for byte") {
@@ -273,16 +285,14 @@ TEST_CASE("ply: colours under their common names, on vertices and on faces") {
              " 255 51 0 51",
              {1, linear(0.2), 0, 0.2F}}}) {
     INFO(c.properties);
-    const std::string k = c.color;
-    check_color(
-        color_at(read(ply_square(c.properties, "",
-                                 "0 0 0" + k + "\n1 0 0" + k + "\n1 1 0" + k + "\n0 1 0" + k + "\n3 0 1 2\n3 0 2 3\n"),
-                      "ply")
-                     .mesh,
-                 0),
-        c.expected);
-    const MeshFile faces =
-        read(ply_square("", c.properties, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2" + k + "\n3 0 2 3" + k + "\n"), "ply");
+    check_color(color_at(read(ply_square(c.properties, "",
+                                         coloured("0 0 0@\n1 0 0@\n1 1 0@\n0 1 0@\n3 0 1 2\n3 0 2 3\n", c.color)),
+                              "ply")
+                             .mesh,
+                         0),
+                c.expected);
+    const MeshFile faces = read(
+        ply_square("", c.properties, coloured("0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2@\n3 0 2 3@\n", c.color)), "ply");
     check_color(color_at(faces.mesh, 5), c.expected);
     CHECK(faces.mesh.wedge_count() == 4);
     CHECK(faces.notes.empty());
@@ -348,15 +358,10 @@ TEST_CASE("stl: colours of facets in both ways of writing them") {
 TEST_CASE("off: colours of vertices and faces, as bytes and as floats") {
   const std::string faces = "3 0 1 2\n";
   for (const char* color : {" 255 51 0", " 1.0 0.2 0"}) {
-    const std::string k = color;
+    const std::string vertices = coloured("\n3 1 0\n0 0 0@\n1 0 0@ # c\n0 1 0@\n", color);
     for (const char* keyword : {"COFF", "OFF"})
-      check_color(
-          color_at(read(std::string(keyword) + "\n3 1 0\n0 0 0" + k + "\n1 0 0" + k + " # c\n0 1 0" + k + "\n" + faces,
-                        "off")
-                       .mesh,
-                   0),
-          {1, linear(0.2), 0});
-    check_color(color_at(read("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2" + k + "\n", "off").mesh, 2),
+      check_color(color_at(read(keyword + vertices + faces, "off").mesh, 0), {1, linear(0.2), 0});
+    check_color(color_at(read(coloured("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2@\n", color), "off").mesh, 2),
                 {1, linear(0.2), 0});
   }
   CHECK_THAT(all_notes(read("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 5\n", "off").notes), contains("colour map"));

@@ -69,7 +69,7 @@ std::vector<float> strip_positions(int begin, int quads) {
 }
 std::vector<std::uint16_t> strip_indices(int quads) {
   std::vector<std::uint16_t> indices;
-  for (std::uint16_t i = 0; i < 2 * quads; i = static_cast<std::uint16_t>(i + 2))
+  for (int i = 0; i < 2 * quads; i += 2)
     for (const int k : {0, 2, 1, 1, 2, 3}) indices.push_back(static_cast<std::uint16_t>(i + k));
   return indices;
 }
@@ -514,7 +514,8 @@ TEST_CASE("morph targets, sparse ones too, stay with their vertices") {
 
   std::multiset<std::vector<float>> expected;
   for (int i = 0; i < 10; ++i) {
-    std::vector<float> corner = {static_cast<float>(i / 2), static_cast<float>(i % 2), static_cast<float>(i), 0, 0, 0};
+    const int column = i / 2;
+    std::vector<float> corner = {static_cast<float>(column), static_cast<float>(i % 2), static_cast<float>(i), 0, 0, 0};
     if (i == 2) corner = {1, 0, 2, 1, 2, 3};
     if (i == 7) corner = {3, 1, 7, 4, 5, 6};
     expected.insert(corner);

@@ -32,7 +32,7 @@ std::string triangle_gltf(const std::string& extra) {
 }
 
 std::filesystem::path write_sphere(const ScratchDirectory& folder) {
-  const std::filesystem::path path = folder / "sphere.obj";
+  std::filesystem::path path = folder / "sphere.obj";
   REQUIRE(write_mesh(path, assemble(icosphere(3, 0.02, 1)).value().mesh));
   return path;
 }
