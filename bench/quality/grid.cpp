@@ -7,8 +7,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "lodestone_stream.h"
-#include "referee.h"
+#include "peers/lodestone_stream.h"
+#include "peers/referee.h"
 #include "report.h"
 
 namespace lodestone::bench {
@@ -51,6 +51,7 @@ bool apply_word(const std::string& word, Setting& setting) {
 
 Result<Setting> parse_setting(const std::string& text) {
   Setting setting{text, {}, false};
+  setting.options.measure_step = 0;  // bounds change no removal
   std::istringstream words(text);
   for (std::string word; std::getline(words, word, ',');) {
     if (apply_word(word, setting)) continue;
@@ -89,9 +90,9 @@ void run_grid(const std::vector<Setting>& settings, const Models& models, const 
       for (const Target& target : targets) counts.push_back(target.faces);
       const auto levels =
           lodestone_stream(settings[s].with_attributes ? model.attributed : model.mesh, counts, settings[s].options);
-      cpu_seconds += levels.empty() ? 0 : levels.front().cpu_seconds;
+      cpu_seconds += levels.empty() ? 0 : levels.front().seconds.cpu;
       for (std::size_t t = 0; t < targets.size(); ++t) {
-        rows.push_back({model.name, targets[t], &keys[s], referees[m].judge(levels[t].surface), levels[t].cpu_seconds});
+        rows.push_back({model.name, targets[t], &keys[s], referees[m].judge(levels[t].surface), levels[t].seconds.cpu});
       }
     }
     std::printf("| %s", settings[s].text.c_str());

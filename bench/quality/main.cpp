@@ -19,10 +19,10 @@
 
 #include "grid.h"
 #include "models.h"
+#include "peers/referee.h"
+#include "peers/simplifier.h"
 #include "picture.h"
-#include "referee.h"
 #include "report.h"
-#include "simplifier.h"
 
 namespace lodestone::bench {
 namespace {
@@ -108,7 +108,7 @@ void compare_on(const Model& model, const std::vector<Target>& targets, const st
   for (std::size_t t = 0; t < targets.size(); ++t) {
     for (std::size_t s = 0; s < tools.size(); ++s) {
       const Level& level = levels[s][t];
-      rows.push_back({model.name, targets[t], &tools[s], referee.judge(level.surface), level.cpu_seconds});
+      rows.push_back({model.name, targets[t], &tools[s], referee.judge(level.surface), level.seconds.cpu});
     }
   }
 }
@@ -158,7 +158,7 @@ TimedError timed_error(const Simplifier& tool, const Mesh& mesh, std::size_t fac
   for (int run = 0; run < kTimedRuns; ++run) {
     const std::vector<Level> levels = tool.run(mesh, std::span(&faces, 1));
     if (run == 0) result.error = referee.judge(levels.front().surface).mean;
-    const double seconds = levels.front().cpu_seconds;
+    const double seconds = levels.front().seconds.cpu;
     result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
   }
   return result;

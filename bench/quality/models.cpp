@@ -48,14 +48,6 @@ const std::vector<FileOfModel>& files() {
   return list;
 }
 
-/// Drops attributes and materials, so that only what is open in space is a border.
-Mesh positions_of(TriangleSoup soup) {
-  soup.attributes.clear();
-  soup.face_material.clear();
-  auto assembled = assemble(soup);
-  return assembled ? std::move(assembled->mesh) : Mesh{};
-}
-
 TriangleSoup part_of(const TriangleSoup& soup, Index material) {
   TriangleSoup part = soup;
   part.indices.clear();

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <lodestone/core/mesh.h>
+#include "peers/surface.h"
 
 namespace lodestone::bench {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "models.h"
-#include "referee.h"
-#include "simplifier.h"
+#include "peers/referee.h"
+#include "peers/simplifier.h"
 
 namespace lodestone::bench {
 

@@ -62,12 +62,12 @@ class Snapshots {
   /// Takes the levels that are due; returns whether that was the last.
   bool offer(const SurfaceMesh& mesh) {
     if (done() || mesh.number_of_faces() > face_counts_[levels_.size()]) return done();
-    const CpuClock copying;
-    const double cpu_seconds = clock_.seconds() - spent_copying_;
+    const Clock copying;
+    const Seconds seconds = clock_.seconds() - spent_copying_;
     while (!done() && mesh.number_of_faces() <= face_counts_[levels_.size()]) {
-      levels_.push_back({from_cgal(mesh), cpu_seconds});
+      levels_.push_back({from_cgal(mesh), seconds});
     }
-    spent_copying_ += copying.seconds();
+    spent_copying_ = spent_copying_ + copying.seconds();
     return done();
   }
 
@@ -82,8 +82,8 @@ class Snapshots {
 
   std::span<const std::size_t> face_counts_;
   std::vector<Level> levels_;
-  CpuClock clock_;
-  double spent_copying_ = 0;
+  Clock clock_;
+  Seconds spent_copying_;
 };
 
 /// CGAL's stop predicate, asked before each collapse.

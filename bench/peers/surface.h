@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <lodestone/core/assemble.h>
 #include <lodestone/core/mesh.h>
 
 namespace lodestone::bench {
@@ -13,6 +14,10 @@ struct Surface {
   std::vector<Vec3> points;                 ///< may hold points that no face uses
   std::vector<std::array<Index, 3>> faces;  ///< indices into `points`, counter-clockwise from outside
 };
+
+/// Assembles triangles without their attributes and materials, so that only what is open in space is a border. Nothing
+/// where they cannot be.
+Mesh positions_of(TriangleSoup soup);
 
 /// Returns the faces of a mesh over its vertices; attributes and materials are left out.
 Surface surface_of(const Mesh& mesh);

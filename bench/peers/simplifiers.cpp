@@ -1,20 +1,6 @@
-#include <ctime>
-
 #include "simplifier.h"
 
 namespace lodestone::bench {
-namespace {
-
-double cpu_now() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
-
-CpuClock::CpuClock() : start_(cpu_now()) {}
-double CpuClock::seconds() const { return cpu_now() - start_; }
 
 std::vector<Simplifier> simplifiers(int effort) {
   const auto with_effort = [effort](auto* run) {

@@ -8,6 +8,7 @@
 
 #include <lodestone/core/mesh.h>
 
+#include "seconds.h"
 #include "surface.h"
 
 namespace lodestone::bench {
@@ -15,7 +16,7 @@ namespace lodestone::bench {
 /// One result of a simplifier.
 struct Level {
   Surface surface;
-  double cpu_seconds = 0;  ///< of the simplification alone, from the mesh as the tool holds it
+  Seconds seconds;  ///< of the simplification alone, from the mesh as the tool holds it
 };
 
 /// A row of the table: something that takes a mesh to face counts.
@@ -45,15 +46,5 @@ std::vector<Level> run_openmesh(const Mesh& mesh, std::span<const std::size_t> f
 std::vector<Level> run_meshoptimizer(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_vtk_quadrics(const Mesh& mesh, std::span<const std::size_t> face_counts);
 std::vector<Level> run_vtk_decimate_pro(const Mesh& mesh, std::span<const std::size_t> face_counts);
-
-/// Measures CPU time of this process, all threads together.
-class CpuClock {
- public:
-  CpuClock();
-  double seconds() const;  ///< since it was made
-
- private:
-  double start_;
-};
 
 }  // namespace lodestone::bench

@@ -1,8 +1,16 @@
 #include "surface.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lodestone::bench {
+
+Mesh positions_of(TriangleSoup soup) {
+  soup.attributes.clear();
+  soup.face_material.clear();
+  auto assembled = assemble(soup);
+  return assembled ? std::move(assembled->mesh) : Mesh{};
+}
 
 Surface surface_of(const Mesh& mesh) {
   Surface surface;

@@ -46,7 +46,7 @@ std::vector<Level> run_openmesh(const Mesh& mesh, std::span<const std::size_t> f
   std::vector<Level> levels;
   for (const std::size_t faces : face_counts) {
     TriMesh copy = to_openmesh(mesh);
-    const CpuClock clock;
+    const Clock clock;
     OpenMesh::Decimater::DecimaterT<TriMesh> decimater(copy);
     OpenMesh::Decimater::ModQuadricT<TriMesh>::Handle quadrics;
     decimater.add(quadrics);
@@ -56,8 +56,8 @@ std::vector<Level> run_openmesh(const Mesh& mesh, std::span<const std::size_t> f
     decimater.add(no_flips);
     decimater.initialize();
     decimater.decimate_to_faces(0, faces);
-    const double cpu_seconds = clock.seconds();
-    levels.push_back({from_openmesh(copy), cpu_seconds});
+    const Seconds seconds = clock.seconds();
+    levels.push_back({from_openmesh(copy), seconds});
   }
   return levels;
 }

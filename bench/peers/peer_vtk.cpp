@@ -45,10 +45,10 @@ std::vector<Level> reduce(Filter& filter, const Mesh& mesh, std::span<const std:
   std::vector<Level> levels;
   for (const std::size_t faces : face_counts) {
     filter.SetTargetReduction(1 - static_cast<double>(faces) / static_cast<double>(mesh.face_count()));
-    const CpuClock clock;
+    const Clock clock;
     filter.Update();
-    const double cpu_seconds = clock.seconds();
-    levels.push_back({from_vtk(*filter.GetOutput()), cpu_seconds});
+    const Seconds seconds = clock.seconds();
+    levels.push_back({from_vtk(*filter.GetOutput()), seconds});
   }
   return levels;
 }

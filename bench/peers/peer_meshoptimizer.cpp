@@ -13,7 +13,7 @@ std::vector<Level> run_meshoptimizer(const Mesh& mesh, std::span<const std::size
   std::vector<Level> levels;
   for (const std::size_t faces : face_counts) {
     std::vector<unsigned> simplified(indices.size());
-    const CpuClock clock;
+    const Clock clock;
     const std::size_t count =
         meshopt_simplify(simplified.data(), indices.data(), indices.size(), &mesh.positions.front().x,
                          mesh.vertex_count(), sizeof(Vec3f), faces * 3, kNoErrorLimit, 0, nullptr);
