@@ -24,14 +24,16 @@ recorded() { awk -v job="$1" -v build="$BUILD" '$1 == job && $2 == build { print
 
 # callgrind's last word is "==PID== Collected : COUNT".
 counted() {
-  local folder
+  local folder failed=0
   folder=$(mktemp -d)
-  valgrind --tool=callgrind --callgrind-out-file="$folder/out" "$PROGRAM" "$1" 2>"$folder/said" || {
+  valgrind --tool=callgrind --callgrind-out-file="$folder/out" "$PROGRAM" "$1" 2>"$folder/said" || failed=1
+  if [ $failed -eq 0 ]; then
+    sed -n 's/^==[0-9]*== Collected : \([0-9]*\)$/\1/p' "$folder/said"
+  else
     cat "$folder/said" >&2
-    return 1
-  }
-  sed -n 's/^==[0-9]*== Collected : \([0-9]*\)$/\1/p' "$folder/said"
+  fi
   rm -r "$folder"
+  return $failed
 }
 
 command -v valgrind >/dev/null || skip "no valgrind"
