@@ -54,11 +54,14 @@ DeviationBounds::DeviationBounds(const Mesh& full, double step)
   bound_.reserve(full.vertex_count());
 }
 
-void DeviationBounds::add(std::span<const RemovalRecord> copies) {
-  for (const RemovalRecord& record : copies) {
-    const double displacement = displacement_bound(*full_, record);
-    for (Chain* chain : {&since_measured_, &since_start_}) chain->add(record, displacement);
-  }
+void DeviationBounds::displacements(std::span<const RemovalRecord> copies, std::vector<double>& displacement) const {
+  displacement.clear();
+  for (const RemovalRecord& record : copies) displacement.push_back(displacement_bound(*full_, record));
+}
+
+void DeviationBounds::add(std::span<const RemovalRecord> copies, std::span<const double> displacement) {
+  for (std::size_t i = 0; i < copies.size(); ++i)
+    for (Chain* chain : {&since_measured_, &since_start_}) chain->add(copies[i], displacement[i]);
   bound_.push_back(round_up(bound()));
 }
 

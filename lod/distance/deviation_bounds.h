@@ -22,8 +22,11 @@ class DeviationBounds {
   /// Measures whenever a share `step` of the faces has gone since the last time; never where it is 0.
   DeviationBounds(const Mesh& full, double step);
 
-  /// Accounts for the removal, just done, of a vertex and its copies.
-  void add(std::span<const RemovalRecord> copies);
+  /// Writes how far each record of a removal, just done, moves the surface at most. Changes nothing here, so that it
+  /// may be called from several threads.
+  void displacements(std::span<const RemovalRecord> copies, std::vector<double>& displacement) const;
+  /// Accounts for the removal of a vertex and its copies, with what `displacements` found for it.
+  void add(std::span<const RemovalRecord> copies, std::span<const double> displacement);
   /// Accounts for a piece that has vanished: all of it lies within `reach` of `face`, which is one of the faces left.
   void add_vanished(std::span<const RemovalRecord> records, Index face, double reach);
   /// Accounts for the last piece: nothing is left to measure a distance to, so the bound is the mesh's diagonal.

@@ -10,7 +10,7 @@ namespace lodestone::detail {
 
 /// Points relative to a common origin, one array for each coordinate, so that distances vectorise.
 ///
-/// The arrays are padded with copies of the last point to whole vectors; `size` counts the points without them.
+/// The arrays are padded to whole vectors with whatever points were there; `size` counts the points without them.
 class PointBatch {
  public:
   static constexpr std::size_t kLanes = 8;
@@ -24,19 +24,16 @@ class PointBatch {
 
   void clear() { size_ = 0; }
   void add(const Vec3& p) {
-    if (size_ % kLanes == 0) grow();
-    for (std::size_t i = size_; i % kLanes != 0 || i == size_; ++i) {
-      x_[i] = static_cast<float>(p.x);
-      y_[i] = static_cast<float>(p.y);
-      z_[i] = static_cast<float>(p.z);
-    }
+    if (size_ == x_.size()) grow();
+    x_[size_] = static_cast<float>(p.x);
+    y_[size_] = static_cast<float>(p.y);
+    z_[size_] = static_cast<float>(p.z);
     ++size_;
   }
 
  private:
   void grow() {
-    if (x_.size() >= size_ + kLanes) return;
-    for (std::vector<float>* v : {&x_, &y_, &z_}) v->resize(size_ + kLanes);
+    for (std::vector<float>* v : {&x_, &y_, &z_}) v->resize((2 * size_ + kLanes) / kLanes * kLanes);
   }
   std::size_t size_ = 0;
   std::vector<float> x_, y_, z_;

@@ -55,6 +55,24 @@ void AttributeCost::add_skin(const Mesh& mesh, const Attribute& joints, double w
   skin_.push_back({weight, joints.component_count, finite_values(joints), finite_values(*found)});
 }
 
+AttributeScale AttributeCost::scale(Index center, std::span<const Index> polygon, bool wraps, double area) const {
+  AttributeScale scale;
+  scale.radius = std::sqrt(area);
+  const std::size_t faces = wraps ? polygon.size() : polygon.size() - 1;
+  for (std::size_t t = 0; t < texture_count(); ++t) {
+    double positive = 0;
+    double negative = 0;
+    for (std::size_t i = 0; i < faces; ++i) {
+      const double doubled = texture_area(t, center, polygon[i], polygon[i + 1 < polygon.size() ? i + 1 : 0]);
+      (doubled > 0 ? positive : negative) += 0.5 * std::abs(doubled);
+    }
+    const double sum = positive + negative;
+    scale.texture.push_back(sum > 0 ? std::sqrt(area / sum) : 0);
+    scale.orientation.push_back(negative == 0 && positive > 0 ? 1 : positive == 0 && negative > 0 ? -1 : 0);
+  }
+  return scale;
+}
+
 double AttributeCost::squared_difference(Index wedge, const Place& place, const AttributeScale& scale) const {
   double sum = 0;
   for (const Channel& channel : channels_) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <lodestone/core/detail/texture_areas.h>
@@ -29,6 +30,10 @@ class AttributeCost {
   /// Whether there is nothing to price, nor a texture whose faces must not turn over.
   bool empty() const { return channels_.empty() && skin_.empty() && textures_.count() == 0; }
   std::size_t texture_count() const { return textures_.count(); }
+
+  /// Returns the scale of one side of a star whose faces are (center, polygon[i], polygon[i + 1]), and have `area` in
+  /// all; `wraps`: the last is (center, polygon.back(), polygon.front()).
+  AttributeScale scale(Index center, std::span<const Index> polygon, bool wraps, double area) const;
 
   /// Where attributes stand on a face: the wedges of its corners, and the weight of each.
   struct Place {

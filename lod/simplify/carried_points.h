@@ -7,38 +7,35 @@
 
 namespace lodestone::detail {
 
+/// A point of the full mesh that some face stands for.
+struct CarriedPoint {
+  Vec3f position;
+  float weight = 1;            ///< how many points it stands for
+  float squared_distance = 0;  ///< from the face that carries it
+  Index next = kNoIndex;       ///< of the same face
+};
+
 /// The memory of the removed surface: points of the full mesh, each carried by the face that now stands for it.
 ///
 /// Points are the original faces' centroids, from the start, and every vertex from its removal on. A list is kept for
-/// each face slot; points 0 … vertex_count − 1 are vertices, the rest centroids. A point's weight says how many it
-/// stands for. Each knows how far it is from the face that carries it.
+/// each face slot; points 0 … vertex_count − 1 are vertices, the rest centroids.
 class CarriedPoints {
  public:
   explicit CarriedPoints(const Mesh& mesh);
 
-  Vec3 position(Index point) const {
-    return point < vertex_count_ ? Vec3(mesh_->positions[point]) : Vec3(centroids_[point - vertex_count_]);
-  }
+  /// The first point of a face; kNoIndex where there is none.
   Index first(Index face) const { return first_[face]; }
-  Index next(Index point) const { return next_[point]; }
+  const CarriedPoint& operator[](Index point) const { return points_[point]; }
+  CarriedPoint& operator[](Index point) { return points_[point]; }
   void add(Index face, Index point) {
-    next_[point] = first_[face];
+    points_[point].next = first_[face];
     first_[face] = point;
   }
-  float squared_distance(Index point) const { return squared_distance_[point]; }
-  void set_squared_distance(Index point, float squared_distance) { squared_distance_[point] = squared_distance; }
-  float weight(Index point) const { return weight_[point]; }
-  void set_weight(Index point, float weight) { weight_[point] = weight; }
   void clear(Index face) { first_[face] = kNoIndex; }
 
  private:
-  const Mesh* mesh_;
-  Index vertex_count_;
-  std::vector<Vec3f> centroids_;
+  std::vector<CarriedPoint> points_;
   std::vector<Index> first_;
-  std::vector<Index> next_;
-  std::vector<float> weight_;
-  std::vector<float> squared_distance_;
 };
 
 }  // namespace lodestone::detail

@@ -1,11 +1,3 @@
-// The cost of a removal joins three measures of what it changes:
-//   V  the volume swept between the old faces and the new ones, memoryless, after Lindstrom, Turk: Fast and memory
-//      efficient polygonal simplification (Visualization 1998);
-//   D  the distance of everything removed so far to the surface that now stands for it, less most of what it was before
-//      the removal: the memory keeps the total honest, the difference lets what is lost already be;
-//   ΔK the change of the discrete curvature against the full mesh, after Kim, Hong, Kim.
-// The pure metrics of Kim, Hong, Kim use the last alone. bench/README.md has the trials behind the constants.
-
 #include "simplify/removal_evaluator.h"
 
 #include <algorithm>
@@ -18,37 +10,11 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kMinCosine = 0.2;   // of the angle that faces may turn, at first
-constexpr double kMinShape = 1e-3;   // a new face's height over its longest edge, where there are no slivers yet
-constexpr double kLeastHeight = 4;   // of a face whose normal says something, over the rounding of coordinates
-constexpr double kFreeDistance = 8;  // what rounding of coordinates, and of distances from them, may pretend
-constexpr double kSameShape = 1e-6;  // relative; shapes that differ by less are the same
-// Triangulations, by swept volume, whose distances are measured, from which effort on.
-constexpr int kMeasuresDistances = 3;
-constexpr int kMeasuresSome = 5;
-constexpr int kMeasuresMore = 8;
-constexpr std::size_t kSome = 3;
-constexpr std::size_t kMore = 8;
-constexpr double kForgiven = 0.7;       // share of the distances there were before that a removal is not charged for
-constexpr double kLeastCharged = 0.02;  // share of the distances after it that it is charged for in any case
-constexpr double kBridgeWeight = 3;     // of new surface where the star had none, against distances of points
-constexpr double kLineWeight = 1.5;     // of a border or crease that moves
-constexpr double kLeastLine = 1.5;      // of its distance, where a border or crease that moves is short
-constexpr double kMaterialWeight = 4;   // of a border between materials that moves: faces change their colour
-constexpr double kSeamWeight = 0.1;     // of a seam that moves: what counts there is the price of the attributes
-constexpr double kTieBreak = 0.2;       // weight of the volume swept, as a length, against a pure curvature error
-constexpr double kMinCurvatureChange = 0.2;  // radians; below it curvature does not separate removals
-
-double squared_longest_edge(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
-}
-
-/// How far rounding to floats may have moved the points of a mesh, each way.
-double rounding_of(const Mesh& mesh) {
-  float largest = 0;
-  for (const Vec3f& p : mesh.positions) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  return 0.5 * static_cast<double>(largest) * static_cast<double>(std::numeric_limits<float>::epsilon());
-}
+constexpr double kLineWeight = 1.5;    // of a border or crease that moves
+constexpr double kLeastLine = 1.5;     // of its distance, where a border or crease that moves is short
+constexpr double kMaterialWeight = 4;  // of a border between materials that moves: faces change their colour
+constexpr double kSeamWeight = 0.1;    // of a seam that moves: what counts there is the price of the attributes
+constexpr double kTieBreak = 0.2;      // weight of the volume swept, as a length, against a pure curvature error
 
 double dihedral_share(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
   return 0.25 * length(b - a) * angle_between(normal_a, normal_b);
@@ -66,17 +32,16 @@ bool take_better(Evaluation& best, const Evaluation& found) {
   return true;
 }
 
-double hybrid_cost(double moved, double turned) {
-  return std::pow(moved, kDistanceExponent) * std::pow(std::max(turned, kMinCurvatureChange), 1 - kDistanceExponent);
-}
-
-RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options)
+RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options,
+                                   const AttributeCost& attributes, const FaceRules& rules, bool short_path)
     : state_(&state),
       options_(&options),
-      attributes_(state.mesh, options.weights),
+      attributes_(&attributes),
+      rules_(&rules),
+      plain_(state, options, attributes, rules),
       ring_of_site_(state.mesh.vertex_count(), kNoIndex) {
-  measures_distances_ = options.metric == Metric::Hybrid && options.effort >= kMeasuresDistances;
-  fully_ranked_ = options.effort >= kMeasuresMore ? kMore : options.effort >= kMeasuresSome ? kSome : 1;
+  takes_short_path_ = short_path && tracks_gaussian_curvature(options);
+  fully_ranked_ = measured_triangulations(options);
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
   table_.resize(kMaxSearchedPolygon * (kMaxSearchedPolygon - 1) * (kMaxSearchedPolygon - 2) / 6);
@@ -84,19 +49,28 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   const double diagonal = bounding_box(state.mesh).diagonal();
   tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
   const Mesh& mesh = state.mesh;
-  rounding_ = rounding_of(mesh);
-  rounded_square_ = kFreeDistance * kFreeDistance * rounding_ * rounding_;
   if (mesh.wedge_count() == mesh.vertex_count()) return;
   wedges_ = Grouping(mesh.vertex_count(), mesh.wedge_count(), [&](Index wedge) { return mesh.wedge_vertex[wedge]; });
 }
 
-bool RemovalEvaluator::relax_angles(bool beyond) {
-  if (turn_limit_ == TurnLimit::None || (turn_limit_ == TurnLimit::Right && !beyond)) return false;
-  turn_limit_ = turn_limit_ == TurnLimit::Acute ? TurnLimit::Right : TurnLimit::None;
-  return true;
+Evaluation RemovalEvaluator::evaluate(Index vertex, Choice& choice) {
+  if (gather_plain(vertex)) return plain_.evaluate(choice);
+  return evaluate_star(vertex, scratch_, choice);
 }
 
-Evaluation RemovalEvaluator::evaluate(Index vertex, Removal& removal, Choice& choice) {
+Evaluation RemovalEvaluator::describe(Index vertex, Choice& choice, Removal& removal, std::vector<double>& curvature) {
+  curvature.clear();
+  if (choice[1] != kPlain || !gather_plain(vertex)) return evaluate_star(vertex, removal, choice);
+  removal.resize(1);
+  return plain_.describe(choice, removal.front(), curvature);
+}
+
+bool RemovalEvaluator::gather_plain(Index vertex) {
+  return takes_short_path_ && !state_->connectivity.is_copy(vertex) && plain_.gather(vertex);
+}
+
+/// Evaluates any removal; `removal` holds the records with the triangles chosen.
+Evaluation RemovalEvaluator::evaluate_star(Index vertex, Removal& removal, Choice& choice) {
   if (state_->connectivity.is_copy(vertex)) return evaluate_copies(vertex, removal, choice);
   removal.resize(1);
   if (const Verdict verdict = gather(vertex); rejects(verdict)) return {verdict};
@@ -187,7 +161,8 @@ void RemovalEvaluator::gather_normals() {
     const Vec3& a = ring_position_[i];
     const Vec3& b = ring_position_[(i + 1) % ring_size()];
     fine_normal_[i] = cross(a - center_, b - center_);
-    has_direction_[i] = has_direction(squared_length(fine_normal_[i]), squared_longest_edge(center_, a, b)) ? 1 : 0;
+    has_direction_[i] =
+        rules_->has_direction(squared_length(fine_normal_[i]), squared_longest_edge(center_, a, b)) ? 1 : 0;
     const Index outer = mesh.opposite(fine_corner_[i]);
     has_outer_[i] = outer != kNoIndex && mesh.site(mesh.vertex(outer)) != site ? 1 : 0;
     bends_[i] = outer != kNoIndex && !mesh.is_crease(fine_corner_[i]) ? 1 : 0;
@@ -282,11 +257,11 @@ double RemovalEvaluator::line_weight(std::size_t spoke) const {
 /// The wedge of `vertex` whose attributes are most like those of another.
 Index RemovalEvaluator::best_wedge(Index vertex, Index like) const {
   if (wedges_.empty()) return vertex;  // never: without seams there are no corners that move
-  AttributeScale scale{1, std::vector<double>(attributes_.texture_count(), 1), {}};
+  AttributeScale scale{1, std::vector<double>(attributes_->texture_count(), 1), {}};
   Index best = wedges_[vertex].front();
   double least = std::numeric_limits<double>::infinity();
   for (const Index wedge : wedges_[vertex]) {
-    const double difference = attributes_.squared_difference(like, {{wedge, wedge, wedge}, {1, 0, 0}}, scale);
+    const double difference = attributes_->squared_difference(like, {{wedge, wedge, wedge}, {1, 0, 0}}, scale);
     if (difference < least) least = difference, best = wedge;
   }
   return best;
@@ -303,7 +278,7 @@ void RemovalEvaluator::take_sectors(RemovalRecord& record, std::size_t target) {
     sector.target = target;
     gather_shapes(sector);
     for (std::size_t i = 0; i < patch.face_count(); ++i) sector.normal += fine_normal_[ring_begin + i];
-    if (!attributes_.empty()) sector.scale = attribute_scale(patch, ring_begin);
+    if (!attributes_->empty()) sector.scale = attribute_scale(patch, ring_begin);
     ring_begin += patch.face_count();
   }
   take_lines(target);
@@ -317,43 +292,21 @@ void RemovalEvaluator::take_lines(std::size_t target) {
       lines_.push_back({target, spoke, line_weight(spoke), lines_.empty() && is_constrained_spoke(target)});
 }
 
-/// What was a sliver may stay one, as long as it gets no worse: where the worst of a sector's faces is one, that is the
-/// limit.
+/// Collects what the shapes of a sector's new faces are compared with.
 void RemovalEvaluator::gather_shapes(Sector& sector) const {
-  sector.least_shape = kMinShape;
   for (std::size_t i = sector.ring_begin; i < sector.ring_begin + sector.patch->face_count(); ++i) {
-    const double longest = squared_longest_edge(center_, ring_position_[i], ring_position_[(i + 1) % ring_size()]);
-    if (!(squared_length(fine_normal_[i]) > kMinShape * kMinShape * longest * longest))
-      sector.least_shape = std::min(sector.least_shape, (1 - kSameShape) * length(fine_normal_[i]) / longest);
+    sector.least_shape.add(squared_length(fine_normal_[i]),
+                           squared_longest_edge(center_, ring_position_[i], ring_position_[(i + 1) % ring_size()]));
     sector.has_directions = sector.has_directions && has_direction_[i] != 0;
   }
 }
 
-/// Whether a face with such a normal and longest edge is so high that rounding its corners leaves the normal what it
-/// is.
-bool RemovalEvaluator::has_direction(double squared_normal, double squared_longest) const {
-  return squared_normal > kLeastHeight * kLeastHeight * rounding_ * rounding_ * squared_longest;
-}
-
 AttributeScale RemovalEvaluator::attribute_scale(const SectorPatch& patch, std::size_t ring_begin) const {
-  AttributeScale scale;
   double area = 0;
   for (std::size_t i = 0; i < patch.face_count(); ++i) area += 0.5 * length(fine_normal_[ring_begin + i]);
-  scale.radius = std::sqrt(area);
-  for (std::size_t t = 0; t < attributes_.texture_count(); ++t) {
-    double positive = 0;
-    double negative = 0;
-    for (std::size_t i = 0; i < patch.face_count(); ++i) {
-      const Index b = patch.polygon[i];
-      const Index c = patch.polygon[i + 1 < patch.polygon.size() ? i + 1 : 0];
-      const double doubled = attributes_.texture_area(t, patch.center, b, c);
-      (doubled > 0 ? positive : negative) += 0.5 * std::abs(doubled);
-    }
-    const double texture_area = positive + negative;
-    scale.texture.push_back(texture_area > 0 ? std::sqrt(area / texture_area) : 0);
-    scale.orientation.push_back(negative == 0 && positive > 0 ? 1 : positive == 0 && negative > 0 ? -1 : 0);
-  }
-  return scale;
+  const bool wraps = patch.shape == SectorShape::Closed;
+  const std::size_t size = patch.face_count() + (wraps ? 0 : 1);
+  return attributes_->scale(patch.center, {patch.polygon.data(), size}, wraps, area);
 }
 
 void RemovalEvaluator::gather_outside_curvature() {
@@ -427,7 +380,7 @@ Verdict RemovalEvaluator::fill_with_fan(Sector& sector, SectorPatch& patch, std:
 Verdict RemovalEvaluator::judge_filled(Sector& sector, const SectorPatch& patch) {
   if (sector.size() == 2) return Verdict::Legal;
   reset_triangles(sector.size());
-  if (measures_distances_) gather_points(sector);
+  if (measures_distances()) gather_points(sector);
   return judge(sector, patch.triangles);
 }
 
@@ -453,8 +406,8 @@ RemovalEvaluator::Triangle& RemovalEvaluator::triangle(const Sector& sector, Pol
 Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const Triangle& entry) const {
   const double square = squared_length(entry.normal);
   const double longest = squared_longest_edge(position(sector, t.a), position(sector, t.b), position(sector, t.c));
-  if (!(square > sector.least_shape * sector.least_shape * longest * longest)) return Verdict::Shape;
-  if (sector.has_directions && !has_direction(square, longest)) return Verdict::Shape;
+  if (!sector.least_shape.is_met(square, longest)) return Verdict::Shape;
+  if (sector.has_directions && !rules_->has_direction(square, longest)) return Verdict::Shape;
   bool at_rim = false;
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
     if (!is_rim(sector, from, to)) {
@@ -464,26 +417,19 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
     }
     if (has_direction_[sector.ring_begin + from] == 0) continue;
     at_rim = true;
-    if (turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
+    if (rules_->turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
   }
-  if (turn_limit_ != TurnLimit::None && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
-  return attributes_.texture_count() > 0 && turns_texture(sector, t) ? Verdict::Texture : Verdict::Legal;
-}
-
-/// Whether a face turns by more than the angle allowed, from one normal to another, both of any length.
-bool RemovalEvaluator::turns_too_far(const Vec3& to, const Vec3& from) const {
-  if (turn_limit_ == TurnLimit::None) return false;
-  const double cosine = dot(to, from);
-  return cosine < 0 || (turn_limit_ == TurnLimit::Acute && cosine < kMinCosine * length(to) * length(from));
+  if (rules_->limits_turns() && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
+  return attributes_->texture_count() > 0 && turns_texture(sector, t) ? Verdict::Texture : Verdict::Legal;
 }
 
 /// Whether a texture would be turned over or lose its area on a new face, where it did neither on the old ones.
 bool RemovalEvaluator::turns_texture(const Sector& sector, PolygonTriangle t) const {
   const std::vector<Index>& polygon = sector.patch->polygon;
-  for (std::size_t i = 0; i < attributes_.texture_count(); ++i) {
+  for (std::size_t i = 0; i < attributes_->texture_count(); ++i) {
     const int orientation = sector.scale.orientation[i];
     if (orientation == 0) continue;
-    if (!(orientation * attributes_.texture_area(i, polygon[t.a], polygon[t.b], polygon[t.c]) > 0)) return true;
+    if (!(orientation * attributes_->texture_area(i, polygon[t.a], polygon[t.b], polygon[t.c]) > 0)) return true;
   }
   return false;
 }
@@ -543,7 +489,7 @@ Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch, std::uint8_
   if (sector.size() == 2) return Verdict::Legal;
   reset_triangles(sector.size());
   const bool is_hybrid = options_->metric == Metric::Hybrid;
-  if (measures_distances_) gather_points(sector);
+  if (measures_distances()) gather_points(sector);
   if (choice == kNoChoice || rejects(judge(sector, candidate(sector, choice)))) {
     if (const Verdict verdict = list_admissible(sector); rejects(verdict)) return verdict;
     choice = static_cast<std::uint8_t>(is_hybrid ? best_by_distance(sector) : best_by_curvature(sector));
@@ -555,7 +501,7 @@ Verdict RemovalEvaluator::choose(Sector& sector, SectorPatch& patch, std::uint8_
 
 /// Ranks by (V·D)^6 = squared volume · D^6, or by volume alone; the curvature's part is left to the order of removals.
 int RemovalEvaluator::best_by_distance(const Sector& sector) {
-  const std::size_t count = measures_distances_ ? std::min(fully_ranked_, ranked_.size()) : 1;
+  const std::size_t count = measures_distances() ? std::min(fully_ranked_, ranked_.size()) : 1;
   std::partial_sort(ranked_.begin(), ranked_.begin() + static_cast<std::ptrdiff_t>(count), ranked_.end());
   ranked_.resize(count);
   if (count == 1) return ranked_.front().second;
@@ -581,10 +527,10 @@ void RemovalEvaluator::gather_points(const Sector& sector) {
   distance_before_ = 0;
   const CarriedPoints& carried = state_->points;
   for (const Index face : sector.patch->faces) {
-    for (Index p = carried.first(face); p != kNoIndex; p = carried.next(p)) {
-      points_.add(carried.position(p) - center_);
-      weights_.push_back(carried.weight(p));
-      distance_before_ += static_cast<double>(carried.weight(p) * carried.squared_distance(p));
+    for (Index p = carried.first(face); p != kNoIndex; p = carried[p].next) {
+      points_.add(Vec3(carried[p].position) - center_);
+      weights_.push_back(carried[p].weight);
+      distance_before_ += static_cast<double>(carried[p].weight * carried[p].squared_distance);
     }
   }
 }
@@ -606,8 +552,8 @@ double RemovalEvaluator::added_squared_distance(const Sector& sector, Triangles 
   }
   double sum = 0;
   for (std::size_t i = 0; i < nearest_.size(); ++i)
-    sum += static_cast<double>(weights_[i] * beyond_rounding(nearest_[i]));
-  return std::max(sum - kForgiven * distance_before_, kLeastCharged * sum);
+    sum += static_cast<double>(weights_[i] * rules_->beyond_rounding(nearest_[i]));
+  return charged_distance(sum, distance_before_);
 }
 
 double RemovalEvaluator::curvature_change(Sector& sector, Triangles triangles) {
@@ -696,7 +642,7 @@ double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
     const Vec3& c = position(sector, t.c);
     points_.add((a + b + c) * (1.0 / 3) - center_);
     for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}})
-      if (!is_rim(sector, from, to) && (from < to || from + 1U == sector.size()))
+      if (!is_rim(sector, from, to) && (from < to || (to == 0 && from + 1U == sector.size())))
         points_.add((position(sector, from) + position(sector, to)) * 0.5 - center_);
   }
   nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
@@ -707,7 +653,7 @@ double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
     for (std::size_t p = 0; p < nearest_.size(); ++p) nearest_[p] = std::min(nearest_[p], distance_[p]);
   }
   double sum = 0;
-  for (const float squared_distance : nearest_) sum += static_cast<double>(beyond_rounding(squared_distance));
+  for (const float squared_distance : nearest_) sum += static_cast<double>(rules_->beyond_rounding(squared_distance));
   return sum;
 }
 
@@ -727,7 +673,7 @@ double RemovalEvaluator::line_cost(Index vertex) const {
     if (line.carries_from) add_removed(line.from);
     add_removed(line.to);
     const double area = 0.5 * length(cross(a - center_, b - center_));
-    const double distance = squared_distance > rounded_square_ ? std::sqrt(squared_distance) : 0;
+    const double distance = squared_distance > rules_->rounded_square() ? std::sqrt(squared_distance) : 0;
     sum += line.weight * std::max(std::sqrt(std::sqrt(area) * distance), kLeastLine * distance);
   }
   return sum;
@@ -746,14 +692,12 @@ double RemovalEvaluator::squared_attribute_difference(const Sector& sector, Tria
     place.weights = nearest.weights;
     for (std::size_t k = 0; k < 3; ++k) place.wedges[k] = sector.patch->polygon[corner[k]];
   }
-  return attributes_.squared_difference(sector.patch->center, place, sector.scale);
+  return attributes_->squared_difference(sector.patch->center, place, sector.scale);
 }
 
 Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
   after_ = outside_;
-  double squared_volume = 0;
-  double squared_distance = 0;
-  double squared_attributes = 0;
+  Displacement moved;
   const bool is_hybrid = options_->metric == Metric::Hybrid;
   for (std::size_t s = 0; s < sectors_.size(); ++s) {
     Sector& sector = sectors_[s];
@@ -761,22 +705,23 @@ Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
     if (sectors_.size() > 1) reset_triangles(sector.size());
     add_coarse_curvature(sector, triangles);
     if (triangles.empty()) continue;
-    squared_volume += squared_volume_sum(sector, triangles);
+    moved.squared_volume += squared_volume_sum(sector, triangles);
     if (!is_hybrid) continue;
-    if (measures_distances_) {
+    if (measures_distances()) {
       if (sectors_.size() > 1) gather_points(sector);
-      squared_distance += added_squared_distance(sector, triangles) + kBridgeWeight * bridge_sum(sector, triangles);
+      const double charged = added_squared_distance(sector, triangles);  // before its points are replaced
+      moved.squared_distance += joined_distance(charged, bridge_sum(sector, triangles));
     }
-    if (!attributes_.empty()) squared_attributes += squared_attribute_difference(sector, triangles);
+    if (!attributes_->empty()) moved.squared_attributes += squared_attribute_difference(sector, triangles);
   }
   add_closing_curvature();
   Evaluation result{Verdict::Legal, 0, largest_change()};
-  result.cost = result.curvature_error + tie_break(squared_volume);
-  if (!is_hybrid) return result;
-  const double volume = std::cbrt(std::sqrt(squared_volume));
-  const double swept = measures_distances_ ? std::sqrt(volume * std::sqrt(squared_distance)) : volume;
-  const double moved = swept + line_cost(record.vertex) + std::sqrt(squared_attributes);
-  result.cost = hybrid_cost(moved, result.curvature_error);
+  if (is_hybrid) {
+    moved.line = line_cost(record.vertex);
+    result.cost = hybrid_cost(moved, measures_distances(), result.curvature_error);
+  } else {
+    result.cost = result.curvature_error + tie_break(moved.squared_volume);
+  }
   return result;
 }
 

@@ -15,7 +15,10 @@
 
 #include "distance/point_triangle.h"
 #include "simplify/attribute_cost.h"
+#include "simplify/plain_evaluator.h"
 #include "simplify/polygon_fills.h"
+#include "simplify/removal_cost.h"
+#include "simplify/removal_rules.h"
 #include "simplify/simplify_state.h"
 
 namespace lodestone::detail {
@@ -25,30 +28,6 @@ inline constexpr std::size_t kMaxRing = 250;
 
 /// Larger polygons are filled with fans alone; up to here the triangulation that sweeps the least volume is found, too.
 inline constexpr int kMaxSearchedPolygon = 16;
-
-/// The cost of a removal by the hybrid metric: `moved` is what it moves, a length, `turned` the change of curvature in
-/// radians, which only orders removals that move alike.
-inline constexpr double kDistanceExponent = 0.95;
-double hybrid_cost(double moved, double turned);
-
-/// What the evaluation of a removal found, what says more first. `Turn`: a face would turn too far, which may be let
-/// pass; `Link`: an edge would be doubled; `Shape`: a face would be a worse sliver than those that go; `Texture`: it
-/// would turn a texture over; `Ring`: too many neighbours.
-enum class Verdict : std::uint8_t { Legal, Locked, Turn, Link, Shape, Texture, Ring };
-
-/// Which triangulation each sector of a star was given, or which spoke a corner was moved along, for evaluating it
-/// again.
-using Choice = std::array<std::uint8_t, 2>;
-inline constexpr std::uint8_t kNoChoice = 255;
-inline constexpr std::uint8_t kAlongSpoke = 254;  // in place of the second: copies moved along the spoke named first
-
-struct Evaluation {
-  Verdict verdict = Verdict::Locked;
-  double cost = 0;             ///< orders removals; for the pure curvature metrics it is the curvature error
-  double curvature_error = 0;  ///< ε, in the metric's own unit
-};
-
-inline bool rejects(Verdict verdict) { return verdict != Verdict::Legal; }
 
 /// Takes over a trial that is better than the best so far; where none is legal yet, why this one is not.
 bool take_better(Evaluation& best, const Evaluation& found);
@@ -65,20 +44,17 @@ using Removal = std::vector<RemovalRecord>;
 /// Keeps scratch memory of one star: one object for each thread.
 class RemovalEvaluator {
  public:
-  RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options);
+  /// All outlive the object. Without the short path plain stars are evaluated as all others are: the same, slower.
+  RemovalEvaluator(const SimplifyState& state, const SimplifyOptions& options, const AttributeCost& attributes,
+                   const FaceRules& rules, bool short_path = true);
 
-  /// Evaluates a removal; of several copies `vertex` is the first. Where it is legal, `removal` holds the records with
-  /// the triangles chosen. `choice` names what was chosen; where it comes with a choice that is still admissible, no
-  /// other is tried.
-  Evaluation evaluate(Index vertex, Removal& removal, Choice& choice);
+  /// Evaluates a removal; of several copies `vertex` is the first. `choice` names what was chosen.
+  Evaluation evaluate(Index vertex, Choice& choice);
 
-  /// From now on lets new faces turn further: at first up to a right angle; then, if `beyond`, by any angle, where a
-  /// worse shape is better than too many faces. Textures still must not turn over. Returns whether there was further to
-  /// go.
-  bool relax_angles(bool beyond);
-
-  /// Whether costs depend on the points that faces carry.
-  bool measures_distances() const { return measures_distances_; }
+  /// Describes a removal that was evaluated, where it is still legal: `removal` holds the records with the triangles
+  /// chosen, `curvature` K̄ of the polygon's vertices after it, or nothing. Where the choice is still admissible, no
+  /// other is tried. The evaluation's cost may be left out.
+  Evaluation describe(Index vertex, Choice& choice, Removal& removal, std::vector<double>& curvature);
 
  private:
   /// A triangle of ring corners; its parts are computed when first asked for.
@@ -98,7 +74,7 @@ class RemovalEvaluator {
     std::size_t ring_begin = 0;  // the ring number of polygon corner 0, and of the first face
     std::size_t target = 0;      // the ring number of a moved sector's last corner
     Vec3 normal;                 // sum of its faces' normals
-    double least_shape = 0;      // that a new face must exceed
+    FaceRules::LeastShape least_shape;
     bool has_directions = true;  // whether the normals of all its faces are more than rounding
     Vec3 entry_normal;           // of the triangle chosen at the edge shared with the sector before
     Vec3 exit_normal;            // and with the sector after; the same for an open sector
@@ -113,13 +89,13 @@ class RemovalEvaluator {
     double weight = 1;
     bool carries_from = true;  // whether it takes over what the line to `from` stood for
   };
+  bool measures_distances() const { return fully_ranked_ > 0; }
   using Triangles = std::span<const PolygonTriangle>;
   // How an edge joins two ring vertices: in the sheet looked at, or in another.
   static constexpr std::uint8_t kLinkedHere = 1;
   static constexpr std::uint8_t kLinkedElsewhere = 2;
-  /// How far new faces may turn from the old ones at their rim.
-  enum class TurnLimit : std::uint8_t { Acute, Right, None };
-
+  bool gather_plain(Index vertex);
+  Evaluation evaluate_star(Index vertex, Removal& removal, Choice& choice);
   Evaluation evaluate_hole(RemovalRecord& record, Choice& choice);
   Evaluation evaluate_corner(RemovalRecord& record, Choice& choice);
   Evaluation evaluate_copies(Index vertex, Removal& removal, Choice& choice);
@@ -164,7 +140,6 @@ class RemovalEvaluator {
   Verdict judge(const Sector& sector, PolygonTriangle t, const Triangle& triangle) const;
   Verdict judge(const Sector& sector, Triangles triangles);
   void gather_shapes(Sector& sector) const;
-  bool has_direction(double squared_normal, double squared_longest) const;
   double squared_volume_sum(const Sector& sector, Triangles triangles);
   void measure_distances(const Sector& sector, PolygonTriangle t, Triangle& triangle);
   double added_squared_distance(const Sector& sector, Triangles triangles);
@@ -176,14 +151,8 @@ class RemovalEvaluator {
   double bridge_sum(const Sector& sector, Triangles triangles);
   double line_cost(Index vertex) const;
   double squared_attribute_difference(const Sector& sector, Triangles triangles) const;
-  bool turns_too_far(const Vec3& to, const Vec3& from) const;
   bool turns_texture(const Sector& sector, PolygonTriangle t) const;
   Evaluation combine(const RemovalRecord& record);
-
-  /// Rounding takes points off planes and lines; that must not make a removal dearer than one next to it.
-  float beyond_rounding(float squared_distance) const {
-    return squared_distance > static_cast<float>(rounded_square_) ? squared_distance : 0;
-  }
 
   std::size_t ring_size() const { return ring_position_.size(); }
   std::size_t ring_number(const Sector& sector, std::size_t corner) const {
@@ -207,16 +176,16 @@ class RemovalEvaluator {
 
   const SimplifyState* state_;
   const SimplifyOptions* options_;
-  AttributeCost attributes_;
-  Grouping wedges_;  // by vertex; empty without seams
-  TurnLimit turn_limit_ = TurnLimit::Acute;
-  bool measures_distances_ = false;
-  std::size_t fully_ranked_ = 1;  // triangulations by the distances of all points
+  const AttributeCost* attributes_;
+  const FaceRules* rules_;
+  PlainEvaluator plain_;
+  bool takes_short_path_ = false;  // where the star is plain
+  Removal scratch_;
+  Grouping wedges_;               // by vertex; empty without seams
+  std::size_t fully_ranked_ = 0;  // triangulations by the distances of all points; 0: by volume alone
   bool needs_angles_ = false;
   bool needs_dihedrals_ = false;
   double tie_scale_ = 1;
-  double rounding_ = 0;        // how far from their true places coordinates may be
-  double rounded_square_ = 0;  // a squared distance that may be rounding alone
 
   Star star_;
   Vec3 center_;

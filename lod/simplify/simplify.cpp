@@ -1,25 +1,27 @@
 // Removal in rounds: each round takes the cheapest share of all vertices in order of (cost, number) and removes those
-// whose rings do not meet. Within a round records commute, which keeps the order of work out of the result. Pieces that
-// are nearly used up vanish as a whole once that costs no more than the round's removals.
-// Costs: see removal_evaluator.cpp. Deviation bounds: see deviation_bounds.cpp.
+// whose rings do not meet. Within a round records commute, which keeps the order of work, and the number of threads,
+// out of the result. Pieces that are nearly used up vanish as a whole once that costs no more than the round's
+// removals. Costs: see removal_evaluator.cpp. Deviation bounds: see deviation_bounds.cpp.
 
 #include <lodestone/lod/simplify.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/core/parallel.h>
 #include <lodestone/core/validate.h>
 
 #include "distance/deviation_bounds.h"
 #include "simplify/creases.h"
+#include "simplify/evaluator_pool.h"
 #include "simplify/locks.h"
 #include "simplify/pieces.h"
 #include "simplify/record_builder.h"
-#include "simplify/removal_evaluator.h"
 #include "simplify/spatial_order.h"
 
 namespace lodestone {
@@ -45,14 +47,28 @@ constexpr int kNearCandidates = 32;
 constexpr double kCoarseShare = 0.05;
 constexpr double kManyTurn = 0.05;
 
+// Removals that are worked out at once, and vertices that one thread evaluates at once.
+constexpr std::size_t kBatch = 2048;
+constexpr std::size_t kChunk = 64;
+
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
+
+/// A removal of this round: the vertex chosen, and what was found and done about it.
+struct PlannedRemoval {
+  Index vertex = kNoIndex;
+  Removal records;
+  Evaluation evaluation;
+  std::vector<double> curvature;     // K̄ of the ring after it, where the evaluator knows it; else empty
+  std::vector<double> displacement;  // of each record
+  std::size_t face_count = 0;        // that it took
+};
 
 class Simplifier {
  public:
   Simplifier(const Mesh& mesh, Connectivity connectivity, const SimplifyOptions& options)
       : options_(options),
         state_{mesh, std::move(connectivity), CarriedPoints(mesh), {}, {}, {}},
-        evaluator_(state_, options_),
+        evaluators_(state_, options_),
         builder_(mesh, state_.connectivity),
         bounds_(mesh, options.measure_step),
         locked_(find_locked(state_.connectivity, options_)),
@@ -62,14 +78,21 @@ class Simplifier {
 
  private:
   void prepare();
+  bool is_standing(Index vertex) const {
+    return state_.connectivity.has_vertex(vertex) && state_.connectivity.site(vertex) == vertex;
+  }
   bool is_locked(Index vertex) const { return !locked_.empty() && locked_[vertex] != 0; }
-  void evaluate(Index vertex);
+  void evaluate(std::span<const Index> vertices);
+  void evaluate(RemovalEvaluator& evaluator, Index vertex);
   bool choose_candidates();
   bool run_round();
-  void try_remove(Index vertex);
-  void remove(const Evaluation& evaluation);
-  bool ring_is_free(Index vertex);
-  void claim_ring(const RemovalRecord& record);
+  std::size_t plan_batch(std::size_t candidate);
+  void describe(RemovalEvaluator& evaluator, PlannedRemoval& planned);
+  bool remove_batch();
+  void remove(PlannedRemoval& planned);
+  void follow_up(PlannedRemoval& planned);
+  void account_for(PlannedRemoval& planned);
+  bool claim_ring(Index vertex);
   void update_dirty();
   bool is_kept_by_turning(Index vertex) const;
   bool relax_angles(bool beyond_right_angles);
@@ -87,7 +110,7 @@ class Simplifier {
 
   SimplifyOptions options_;
   SimplifyState state_;
-  RemovalEvaluator evaluator_;
+  EvaluatorPool evaluators_;
   RecordBuilder builder_;
   DeviationBounds bounds_;
 
@@ -104,11 +127,15 @@ class Simplifier {
   std::vector<Verdict> verdict_;
   std::vector<Choice> choice_;
   std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
+  std::vector<Index> standing_;      // sites that are left, ascending, and some that have gone
   std::vector<Index> candidates_;
   std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
+  std::vector<Index> bent_;  // vertices around removals after which K̄ is not known yet
+  std::vector<Index> looked_at_;
+  std::vector<PlannedRemoval> batch_;
+  std::size_t batch_size_ = 0;
   Index round_ = 0;
-  Removal removal_;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
   std::size_t evaluation_count_ = 0;
@@ -116,10 +143,7 @@ class Simplifier {
 
 void Simplifier::prepare() {
   const std::size_t count = state_.mesh.vertex_count();
-  state_.curvature = vertex_curvatures(state_.mesh, state_.connectivity);
-  state_.original_curvature.resize(count);
-  for (Index v = 0; v < count; ++v)
-    state_.original_curvature[v] = static_cast<float>(metric_curvature(options_, state_.curvature[v]));
+  gather_curvature(state_, options_);
   for (Index v = 0; v < options_.importance.size(); ++v) {
     float& of_all = options_.importance[state_.connectivity.site(v)];
     of_all = std::max(of_all, options_.importance[v]);
@@ -130,15 +154,21 @@ void Simplifier::prepare() {
   verdict_.assign(count, Verdict::Locked);
   claimed_.assign(count, 0);
   for (Index v = 0; v < count; ++v)
-    if (state_.connectivity.has_vertex(v) && state_.connectivity.site(v) == v) evaluate(v);
+    if (is_standing(v)) standing_.push_back(v);
+  evaluate(standing_);
   price_pieces();
 }
 
-void Simplifier::evaluate(Index vertex) {
+void Simplifier::evaluate(std::span<const Index> vertices) {
+  evaluators_.for_each(vertices.size(), kChunk,
+                       [&](RemovalEvaluator& evaluator, std::size_t i) { evaluate(evaluator, vertices[i]); });
+  evaluation_count_ += vertices.size();
+}
+
+void Simplifier::evaluate(RemovalEvaluator& evaluator, Index vertex) {
   choice_[vertex] = {kNoChoice, kNoChoice};
   if (is_locked(vertex)) return;  // as `prepare` left it
-  Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
-  ++evaluation_count_;
+  Evaluation evaluation = evaluator.evaluate(vertex, choice_[vertex]);
   if (!options_.importance.empty()) evaluation.cost *= static_cast<double>(options_.importance[vertex]);
   stale_[vertex] = 0;
   verdict_[vertex] = evaluation.verdict;
@@ -156,7 +186,8 @@ bool Simplifier::choose_candidates() {
   candidates_.clear();
   std::fill(piece_moves_.begin(), piece_moves_.end(), std::uint8_t{0});
   std::size_t turning = 0;
-  for (Index v = 0; v < cost_.size(); ++v) {
+  std::erase_if(standing_, [&](Index v) { return !state_.connectivity.has_vertex(v); });
+  for (const Index v : standing_) {
     if (is_kept_by_turning(v)) ++turning;
     if (cost_[v] == kIllegal) continue;
     candidates_.push_back(v);
@@ -177,68 +208,115 @@ bool Simplifier::choose_candidates() {
   const bool any_free = std::any_of(candidates_.begin(), last, [&](Index v) { return cost_[v] == 0; });
   limit_ = any_free ? 0 : cost_[*last];
   candidates_.resize(count);
+  looked_at_.clear();
   for (const Index v : candidates_)
-    if (stale_[v] != 0) evaluate(v);
+    if (stale_[v] != 0) looked_at_.push_back(v);
+  evaluate(looked_at_);
   candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit_; }),
                     candidates_.end());
   std::sort(candidates_.begin(), candidates_.end(), cheaper);
   return true;
 }
 
-/// Whether no removal of this round has touched the stars of the vertex and its copies.
-bool Simplifier::ring_is_free(Index vertex) {
+/// Claims a vertex, its copies and their rings for its removal, unless one of them is claimed in this round.
+bool Simplifier::claim_ring(Index vertex) {
   const Connectivity& mesh = state_.connectivity;
-  const auto is_claimed = [&](Index v) { return claimed_[mesh.site(v)] == round_ + 1; };
-  if (is_claimed(vertex)) return false;
+  looked_at_.clear();
   for (Index copy = vertex;;) {
-    mesh.gather_star(copy, star_);
-    for (const Index corner : star_.corners)
-      if (is_claimed(mesh.vertex(next_corner(corner))) || is_claimed(mesh.vertex(previous_corner(corner))))
-        return false;
-    copy = mesh.next_copy(copy);
-    if (copy == vertex) return true;
-  }
-}
-
-void Simplifier::claim_ring(const RemovalRecord& record) {
-  const Connectivity& mesh = state_.connectivity;
-  claimed_[mesh.site(record.vertex)] = round_ + 1;
-  for (const SectorPatch& sector : record.sectors)
-    for (const Index wedge : sector.polygon) {
-      const Index site = mesh.site(mesh.vertex_of_wedge(wedge));
-      if (claimed_[site] == round_ + 1) continue;
-      claimed_[site] = round_ + 1;
-      dirty_.push_back(site);
+    const Index start = mesh.corner_at(copy);
+    for (Index corner = start; corner != kNoIndex;) {
+      looked_at_.push_back(mesh.site(mesh.vertex(next_corner(corner))));
+      const Index left = mesh.swing_left(corner);
+      if (left == kNoIndex) looked_at_.push_back(mesh.site(mesh.vertex(previous_corner(corner))));
+      corner = left == start ? kNoIndex : left;
     }
+    copy = mesh.next_copy(copy);
+    if (copy == vertex) break;
+  }
+  looked_at_.push_back(vertex);
+  for (const Index site : looked_at_)
+    if (claimed_[site] == round_ + 1) return false;
+  for (const Index site : looked_at_) claimed_[site] = round_ + 1;
+  return true;
 }
 
-void Simplifier::remove(const Evaluation& evaluation) {
+/// Plans the removals of candidates, from one on, whose rings do not meet; returns the first candidate not looked at.
+std::size_t Simplifier::plan_batch(std::size_t candidate) {
+  batch_size_ = 0;
+  for (; candidate < candidates_.size() && batch_size_ < kBatch; ++candidate) {
+    const Index vertex = candidates_[candidate];
+    if (!claim_ring(vertex)) continue;
+    if (batch_size_ == batch_.size()) batch_.emplace_back();
+    batch_[batch_size_++].vertex = vertex;
+  }
+  evaluators_.for_each(batch_size_, kChunk,
+                       [&](RemovalEvaluator& evaluator, std::size_t i) { describe(evaluator, batch_[i]); });
+  return candidate;
+}
+
+/// Looks at a removal again: what lies around its ring may have changed since it was ranked.
+void Simplifier::describe(RemovalEvaluator& evaluator, PlannedRemoval& planned) {
+  const Index vertex = planned.vertex;
+  planned.evaluation = evaluator.describe(vertex, choice_[vertex], planned.records, planned.curvature);
+  planned.evaluation.cost = static_cast<double>(cost_[vertex]);  // as ranked, importance included
+  verdict_[vertex] = planned.evaluation.verdict;
+  if (!rejects(planned.evaluation.verdict) && planned.evaluation.curvature_error > options_.stop.max_curvature_error)
+    planned.evaluation.verdict = Verdict::Locked;
+  if (rejects(planned.evaluation.verdict)) cost_[vertex] = kIllegal;
+}
+
+/// Does the removals planned; false where the target was met before all were.
+bool Simplifier::remove_batch() {
+  std::size_t done = 0;
+  for (; done < batch_size_ && !target_met(); ++done) remove(batch_[done]);
+  for_each_chunk(done, kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) follow_up(batch_[i]);
+  });
+  for (std::size_t i = 0; i < done; ++i) account_for(batch_[i]);
+  return done == batch_size_;
+}
+
+void Simplifier::remove(PlannedRemoval& planned) {
+  if (rejects(planned.evaluation.verdict)) return;
   const std::size_t before = state_.connectivity.face_count();
-  for (RemovalRecord& record : removal_) {
-    claim_ring(record);
+  for (RemovalRecord& record : planned.records) {
     remove_vertex(state_.connectivity, record);
-    if (evaluator_.measures_distances()) carry_points(state_, record);
     carry_lines(state_, record);
   }
-  bounds_.add(removal_);
-  builder_.add(removal_, evaluation.curvature_error);
-  note_charge(evaluation.cost);
-  const Index vertex = removal_.front().vertex;
-  pieces_.lose_faces(pieces_.piece_of(vertex), before - state_.connectivity.face_count());
-  cost_[state_.connectivity.site(vertex)] = kIllegal;
+  planned.face_count = before - state_.connectivity.face_count();
 }
 
-void Simplifier::try_remove(Index vertex) {
-  if (!ring_is_free(vertex)) return;
-  Evaluation evaluation = evaluator_.evaluate(vertex, removal_, choice_[vertex]);
-  // Its surroundings may have changed since it was ranked.
-  verdict_[vertex] = evaluation.verdict;
-  if (evaluation.verdict != Verdict::Legal || evaluation.curvature_error > options_.stop.max_curvature_error) {
-    cost_[vertex] = kIllegal;
-    return;
-  }
-  evaluation.cost = static_cast<double>(cost_[vertex]);  // as ranked, importance included
-  remove(evaluation);
+/// What one removal does by itself, and nowhere but in its own star.
+void Simplifier::follow_up(PlannedRemoval& planned) {
+  if (rejects(planned.evaluation.verdict)) return;
+  if (measured_triangulations(options_) > 0)
+    for (const RemovalRecord& record : planned.records) carry_points(state_, record);
+  keep_curvature(state_, planned.records, planned.curvature);
+  bounds_.displacements(planned.records, planned.displacement);
+}
+
+void Simplifier::account_for(PlannedRemoval& planned) {
+  if (rejects(planned.evaluation.verdict)) return;
+  const Connectivity& mesh = state_.connectivity;
+  const auto add_once = [](std::vector<Index>& list, std::size_t begin, Index entry) {
+    const auto first = list.begin() + static_cast<std::ptrdiff_t>(begin);
+    if (std::find(first, list.end(), entry) == list.end()) list.push_back(entry);
+  };
+  const std::size_t first_dirty = dirty_.size();
+  const std::size_t first_bent = bent_.size();
+  for (const RemovalRecord& record : planned.records)
+    for (const SectorPatch& sector : record.sectors)
+      for (const Index wedge : sector.polygon) {
+        const Index vertex = mesh.vertex_of_wedge(wedge);
+        add_once(dirty_, first_dirty, mesh.site(vertex));
+        if (planned.curvature.empty()) add_once(bent_, first_bent, vertex);
+      }
+  bounds_.add(planned.records, planned.displacement);
+  builder_.add(planned.records, planned.evaluation.curvature_error);
+  note_charge(planned.evaluation.cost);
+  const Index vertex = planned.vertex;
+  pieces_.lose_faces(pieces_.piece_of(vertex), planned.face_count);
+  cost_[vertex] = kIllegal;
 }
 
 void Simplifier::note_charge(double cost) {
@@ -263,27 +341,26 @@ bool Simplifier::target_met() {
 
 /// Looks anew at what lies around this round's removals.
 void Simplifier::update_dirty() {
-  const Connectivity& mesh = state_.connectivity;
-  for (const Index site : dirty_)
-    for (Index copy = site;;) {
-      state_.curvature[copy] = vertex_curvature(state_.mesh, mesh, copy);
-      copy = mesh.next_copy(copy);
-      if (copy == site) break;
-    }
+  for_each_chunk(bent_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) update_curvature(state_, options_, bent_[i]);
+  });
+  looked_at_.clear();
   for (const Index site : dirty_) {
-    stale_[site] = 1;
     // It may be legal now; and on flat sides costs fall, too, as what has been in the way goes.
-    if (cost_[site] == kIllegal || limit_ == 0) evaluate(site);
+    if (cost_[site] == kIllegal || limit_ == 0) looked_at_.push_back(site);
+    stale_[site] = 1;
   }
+  evaluate(looked_at_);
 }
 
 /// Removes the candidates whose rings do not meet, and pieces that cost no more; false where nothing is left to try.
 bool Simplifier::run_round() {
   dirty_.clear();
+  bent_.clear();
   const bool any_left = choose_candidates();
-  for (const Index vertex : candidates_) {
-    if (target_met()) break;
-    try_remove(vertex);
+  for (std::size_t candidate = 0; candidate < candidates_.size();) {
+    candidate = plan_batch(candidate);
+    if (!remove_batch()) break;
   }
   update_dirty();
   builder_.end_round();
@@ -294,15 +371,16 @@ bool Simplifier::run_round() {
 
 /// Whether only the limit on angles keeps a vertex; of several copies the first stands for all.
 bool Simplifier::is_kept_by_turning(Index vertex) const {
-  const Connectivity& mesh = state_.connectivity;
-  return verdict_[vertex] == Verdict::Turn && mesh.has_vertex(vertex) && mesh.site(vertex) == vertex;
+  return verdict_[vertex] == Verdict::Turn && is_standing(vertex);
 }
 
 /// Lets faces turn further, and looks anew at the vertices that this kept. Returns whether there was further to go.
 bool Simplifier::relax_angles(bool beyond_right_angles) {
-  if (!evaluator_.relax_angles(beyond_right_angles)) return false;
-  for (Index v = 0; v < cost_.size(); ++v)
-    if (is_kept_by_turning(v)) evaluate(v);
+  if (!evaluators_.relax_angles(beyond_right_angles)) return false;
+  std::vector<Index> kept;
+  for (const Index v : standing_)
+    if (is_kept_by_turning(v)) kept.push_back(v);
+  evaluate(kept);
   return true;
 }
 
@@ -403,7 +481,7 @@ Index Simplifier::vertex_left_near(Index vertex, Index piece) const {
 BlockedCounts Simplifier::count_blocked() const {
   BlockedCounts blocked;
   for (Index v = 0; v < verdict_.size(); ++v) {
-    if (!state_.connectivity.has_vertex(v) || state_.connectivity.site(v) != v) continue;
+    if (!is_standing(v)) continue;
     switch (verdict_[v]) {
       case Verdict::Legal:
         ++blocked.error;

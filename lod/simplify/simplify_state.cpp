@@ -1,10 +1,15 @@
 #include "simplify/simplify_state.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
+#include <lodestone/core/parallel.h>
+
 #include "distance/point_triangle.h"
+#include "simplify/angles.h"
 
 namespace lodestone::detail {
 namespace {
@@ -16,7 +21,7 @@ constexpr std::size_t kMaxPointsOfFace = 8;
 std::vector<Index> take_points(CarriedPoints& points, const SectorPatch& sector) {
   std::vector<Index> taken;
   for (const Index face : sector.faces) {
-    for (Index p = points.first(face); p != kNoIndex; p = points.next(p)) taken.push_back(p);
+    for (Index p = points.first(face); p != kNoIndex; p = points[p].next) taken.push_back(p);
     points.clear(face);
   }
   return taken;
@@ -52,7 +57,7 @@ struct Heir {
 std::vector<Heir> nearest_heirs(const SimplifyState& state, const std::vector<Index>& taken,
                                 const std::vector<Index>& faces, const Vec3& origin) {
   PointBatch batch;
-  for (const Index p : taken) batch.add(state.points.position(p) - origin);
+  for (const Index p : taken) batch.add(Vec3(state.points[p].position) - origin);
   std::vector<float> distance(batch.padded_size());
   std::vector<Heir> heir(taken.size());
   for (const Index face : faces) {
@@ -69,12 +74,12 @@ std::vector<Heir> nearest_heirs(const SimplifyState& state, const std::vector<In
 /// Keeps every n-th point of a crowded face, with the weight of all.
 void thin(CarriedPoints& points, std::vector<Index>& members) {
   if (members.size() <= kMaxPointsOfFace) return;
-  const auto weight_of = [&](float sum, Index p) { return sum + points.weight(p); };
+  const auto weight_of = [&](float sum, Index p) { return sum + points[p].weight; };
   const float before = std::accumulate(members.begin(), members.end(), 0.0F, weight_of);
   for (std::size_t i = 0; i < kMaxPointsOfFace; ++i) members[i] = members[i * members.size() / kMaxPointsOfFace];
   members.resize(kMaxPointsOfFace);
   const float after = std::accumulate(members.begin(), members.end(), 0.0F, weight_of);
-  for (const Index p : members) points.set_weight(p, points.weight(p) * before / after);
+  for (const Index p : members) points[p].weight *= before / after;
 }
 
 void give_points(SimplifyState& state, const std::vector<Index>& taken, const std::vector<Index>& faces,
@@ -84,16 +89,44 @@ void give_points(SimplifyState& state, const std::vector<Index>& taken, const st
   for (const Index face : faces) {
     // What the heir holds already stays in the count: the face beyond an ear keeps its own points.
     members.clear();
-    for (Index p = state.points.first(face); p != kNoIndex; p = state.points.next(p)) members.push_back(p);
+    for (Index p = state.points.first(face); p != kNoIndex; p = state.points[p].next) members.push_back(p);
     state.points.clear(face);
     for (std::size_t i = 0; i < taken.size(); ++i) {
       if (heir[i].face != face) continue;
       members.push_back(taken[i]);
-      state.points.set_squared_distance(taken[i], heir[i].squared_distance);
+      state.points[taken[i]].squared_distance = heir[i].squared_distance;
     }
     thin(state.points, members);
     for (const Index p : members) state.points.add(face, p);
   }
+}
+
+/// 2π less the angles at a vertex, π at a border; 0 where it has no faces.
+double gaussian_curvature(const SimplifyState& state, Index vertex) {
+  const Connectivity& mesh = state.connectivity;
+  const Index start = mesh.corner_at(vertex);
+  if (start == kNoIndex) return 0;
+  constexpr std::size_t kMost = 16;
+  std::array<double, kMost> cosine, sine, angle;
+  std::size_t count = 0;
+  double sum = 0;
+  const auto add_up = [&] {
+    angles(count, cosine.data(), sine.data(), angle.data());
+    sum = std::accumulate(angle.begin(), angle.begin() + static_cast<std::ptrdiff_t>(count), sum);
+    count = 0;
+  };
+  const Vec3 center(state.mesh.positions[vertex]);
+  Index corner = start;
+  do {
+    const Vec3 a = Vec3(state.mesh.positions[mesh.vertex(next_corner(corner))]) - center;
+    const Vec3 b = Vec3(state.mesh.positions[mesh.vertex(previous_corner(corner))]) - center;
+    cosine[count] = dot(a, b);
+    sine[count] = length(cross(a, b));
+    if (++count == kMost) add_up();
+    corner = mesh.swing_left(corner);
+  } while (corner != kNoIndex && corner != start);
+  add_up();
+  return (corner == kNoIndex ? 1 : 2) * std::numbers::pi - sum;
 }
 
 }  // namespace
@@ -114,6 +147,34 @@ double metric_curvature(const SimplifyOptions& options, const VertexCurvature& c
   }
   if (options.normalisation == Normalisation::Integral) return value;
   return curvature.area > 0 ? value / curvature.area : 0;
+}
+
+void gather_curvature(SimplifyState& state, const SimplifyOptions& options) {
+  const std::size_t count = state.mesh.vertex_count();
+  state.curvature.resize(count);
+  state.original_curvature.resize(count);
+  constexpr std::size_t kChunk = 4096;
+  for_each_chunk(count, kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      update_curvature(state, options, static_cast<Index>(v));
+      state.original_curvature[v] = static_cast<float>(metric_curvature(options, state.curvature[v]));
+    }
+  });
+}
+
+void update_curvature(SimplifyState& state, const SimplifyOptions& options, Index vertex) {
+  if (tracks_gaussian_curvature(options)) {
+    state.curvature[vertex].gaussian = gaussian_curvature(state, vertex);
+  } else {
+    state.curvature[vertex] = vertex_curvature(state.mesh, state.connectivity, vertex);
+  }
+}
+
+void keep_curvature(SimplifyState& state, std::span<const RemovalRecord> records, std::span<const double> gaussian) {
+  if (gaussian.empty()) return;
+  const std::vector<Index>& polygon = records.front().sectors.front().polygon;
+  for (std::size_t i = 0; i < gaussian.size(); ++i)
+    state.curvature[state.connectivity.vertex_of_wedge(polygon[i])].gaussian = gaussian[i];
 }
 
 void carry_points(SimplifyState& state, const RemovalRecord& record) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <lodestone/core/connectivity.h>
@@ -21,6 +22,20 @@ struct SimplifyState {
   std::vector<VertexCurvature> curvature;  ///< of the current mesh
   std::vector<float> original_curvature;   ///< of the full mesh, in the metric's own unit
 };
+
+/// Whether the metric needs no curvature but K̄, not divided by areas: then `curvature` holds nothing else.
+inline bool tracks_gaussian_curvature(const SimplifyOptions& options) {
+  return options.metric == Metric::Hybrid && options.normalisation == Normalisation::Integral;
+}
+
+/// Fills `curvature` and `original_curvature`.
+void gather_curvature(SimplifyState& state, const SimplifyOptions& options);
+
+/// Works out the curvature of a vertex anew.
+void update_curvature(SimplifyState& state, const SimplifyOptions& options, Index vertex);
+
+/// Takes over K̄ of the vertices around a removal, where it is known; else `gaussian` is empty.
+void keep_curvature(SimplifyState& state, std::span<const RemovalRecord> records, std::span<const double> gaussian);
 
 /// Returns the curvature that a metric looks at, in its own unit; the hybrid metric looks at K̄.
 double metric_curvature(const SimplifyOptions& options, const VertexCurvature& curvature);

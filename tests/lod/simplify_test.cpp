@@ -1,3 +1,4 @@
+#include <lodestone/core/parallel.h>
 #include <lodestone/lod/simplify.h>
 
 #include <algorithm>
@@ -586,6 +587,24 @@ TEST_CASE("what skins and morph targets do counts: their middles stay dense wher
     return static_cast<double>(inside) / static_cast<double>(level.vertex_count());
   };
   CHECK(share_inside(level_of(morph_grid(16), 1)) > 1.5 * share_inside(level_of(morph_grid(16), 0)));
+}
+
+TEST_CASE("any number of threads gives the same records and bounds") {
+  for (const TriangleSoup& soup : {icosphere(5, 0.05, 1), seam_sphere(96, 64), terrain(80, 2)}) {
+    const Mesh mesh = mesh_of(soup);
+    ProgressiveMesh expected;
+    with_threads(1, [&] { expected = simplify(mesh)->mesh; });
+    for (const std::size_t threads : {2, 5}) {
+      ProgressiveMesh found;
+      with_threads(threads, [&] { found = simplify(mesh)->mesh; });
+      CHECK(found.slots == expected.slots);
+      CHECK(found.polygons == expected.polygons);
+      CHECK(found.triangles == expected.triangles);
+      CHECK(found.round_begin == expected.round_begin);
+      CHECK(found.deviation == expected.deviation);
+      CHECK(found.curvature_error == expected.curvature_error);
+    }
+  }
 }
 
 }  // namespace lodestone::test

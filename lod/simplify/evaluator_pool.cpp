@@ -1,0 +1,40 @@
+#include "simplify/evaluator_pool.h"
+
+#include <utility>
+
+#include <lodestone/core/parallel.h>
+
+namespace lodestone::detail {
+
+void EvaluatorPool::for_each(std::size_t count, std::size_t chunk,
+                             const std::function<void(RemovalEvaluator&, std::size_t)>& job) {
+  const auto run = [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<RemovalEvaluator> evaluator = take();
+    for (std::size_t i = begin; i < end; ++i) job(*evaluator, i);
+    give_back(std::move(evaluator));
+  };
+  if (count <= chunk) {
+    if (count > 0) run(0, count);
+  } else {
+    for_each_chunk(count, chunk, run);
+  }
+}
+
+std::unique_ptr<RemovalEvaluator> EvaluatorPool::take() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      std::unique_ptr<RemovalEvaluator> evaluator = std::move(idle_.back());
+      idle_.pop_back();
+      return evaluator;
+    }
+  }
+  return std::make_unique<RemovalEvaluator>(*state_, *options_, attributes_, rules_);
+}
+
+void EvaluatorPool::give_back(std::unique_ptr<RemovalEvaluator> evaluator) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(evaluator));
+}
+
+}  // namespace lodestone::detail

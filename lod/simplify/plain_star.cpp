@@ -1,0 +1,100 @@
+#include "simplify/plain_star.h"
+
+namespace lodestone::detail {
+namespace {
+
+/// Calls `visit(vertex)` for the vertices that an edge joins to a vertex or one of its copies, until one is true.
+template <class Visit>
+bool any_neighbour(const Connectivity& mesh, Index vertex, const Visit& visit) {
+  for (Index copy = vertex;;) {
+    const Index start = mesh.corner_at(copy);
+    Index last = kNoIndex;
+    for (Index corner = start; corner != kNoIndex;) {
+      last = corner;
+      if (visit(mesh.vertex(next_corner(corner)), corner)) return true;
+      corner = mesh.swing_left(corner);
+      if (corner == start) last = kNoIndex;
+      if (corner == start) break;
+    }
+    // At a border no other corner has seen the last one.
+    if (last != kNoIndex && visit(mesh.vertex(previous_corner(last)), kNoIndex)) return true;
+    copy = mesh.next_copy(copy);
+    if (copy == vertex) return false;
+  }
+}
+
+}  // namespace
+
+bool PlainStar::gather(const Mesh& mesh, const Connectivity& connectivity, const FaceRules& rules, Index of_vertex) {
+  vertex = of_vertex;
+  if (!gather_ring(connectivity)) return false;
+  center = Vec3(mesh.positions[vertex]);
+  gather_shapes(mesh, rules);
+  return true;
+}
+
+bool PlainStar::gather_ring(const Connectivity& connectivity) {
+  const Index start = connectivity.corner_at(vertex);
+  wedge = connectivity.wedge(start);
+  size = 0;
+  Index at_last_spoke = kNoIndex;  // the ring's wedge there, as the face before sees it
+  const Index material = connectivity.material(face_of_corner(start));
+  for (Index c = start;;) {
+    const Index at_spoke = connectivity.wedge(next_corner(c));
+    if (size == kMaxSize || connectivity.wedge(c) != wedge || connectivity.is_crease(previous_corner(c)) ||
+        connectivity.material(face_of_corner(c)) != material || (size > 0 && at_spoke != at_last_spoke))
+      return false;
+    corner[size] = c;
+    ring_wedge[size] = at_spoke;
+    ring_vertex[size] = connectivity.vertex_of_wedge(at_spoke);
+    ++size;
+    at_last_spoke = connectivity.wedge(previous_corner(c));
+    c = connectivity.swing_left(c);
+    if (c == kNoIndex) return false;
+    if (c == start) return size >= 3 && at_last_spoke == ring_wedge[0];
+  }
+}
+
+void PlainStar::gather_shapes(const Mesh& mesh, const FaceRules& rules) {
+  for (std::size_t i = 0; i < size; ++i) spoke[i] = Vec3(mesh.positions[ring_vertex[i]]) - center;
+  has_directions = true;
+  least_shape = {};
+  for (std::size_t i = 0; i < size; ++i) {
+    const Vec3& a = spoke[i];
+    const Vec3& b = spoke[after(i)];
+    normal[i] = cross(a, b);
+    squared_normal[i] = squared_length(normal[i]);
+    const double longest = squared_longest_edge({}, a, b);
+    has_direction[i] = rules.has_direction(squared_normal[i], longest);
+    has_directions = has_directions && has_direction[i];
+    least_shape.add(squared_normal[i], longest);
+  }
+}
+
+bool is_simple(const PlainStar& star, const Connectivity& mesh) {
+  const auto site = [&](std::size_t i) { return mesh.site(star.ring_vertex[i]); };
+  for (std::size_t i = 0; i < star.size; ++i)
+    for (std::size_t j = i + 1; j < star.size; ++j)
+      if (site(i) == site(j)) return false;
+  if (star.size > 3) return true;
+  const auto over_star = [&](Index, Index corner) {
+    if (corner == kNoIndex) return false;
+    const Index b = mesh.site(mesh.vertex(next_corner(corner)));
+    const Index c = mesh.site(mesh.vertex(previous_corner(corner)));
+    return (b == site(1) && c == site(2)) || (b == site(2) && c == site(1));
+  };
+  return !any_neighbour(mesh, star.ring_vertex[0], over_star);
+}
+
+std::uint32_t linked_ring(const PlainStar& star, const Connectivity& mesh, std::size_t to) {
+  std::uint32_t linked = 0;
+  any_neighbour(mesh, star.ring_vertex[to], [&](Index neighbour, Index) {
+    const Index site = mesh.site(neighbour);
+    for (std::size_t k = 0; k < star.size; ++k)
+      if (mesh.site(star.ring_vertex[k]) == site) linked |= std::uint32_t{1} << k;
+    return false;
+  });
+  return linked;
+}
+
+}  // namespace lodestone::detail
