@@ -66,7 +66,7 @@ TEST_CASE("the default metric keeps close to the paper's models, both ways, bord
     double mean, maximum;
     std::uint64_t faces_at_a_thousandth;  // of the diagonal
   };
-  for (const Row& row : {Row{"fandisk", 258, 0.0042, 0.07, 800}, Row{"stanford-bunny", 855, 0.00036, 0.0036, 16000}}) {
+  for (const Row& row : {Row{"fandisk", 258, 0.0042, 0.07, 800}, Row{"stanford-bunny", 855, 0.00036, 0.0030, 16000}}) {
     INFO(row.name);
     const Mesh full = read(row.name);
     const ProgressiveMesh mesh = simplified(full, Metric::Hybrid);
