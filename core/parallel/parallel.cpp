@@ -60,6 +60,10 @@ void with_threads(std::size_t thread_count, const std::function<void()>& work) {
 }
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
+  if (count <= 1) {  // nothing to share
+    if (count == 1) job(0);
+    return;
+  }
   check_memory();
   FirstFailure failure;
   // Jobs are large and of any length: each is a task of its own.

@@ -6,38 +6,18 @@
 #include <algorithm>
 #include <limits>
 
+#include "distance/float_segment.h"
+#include "distance/wide_vectors.h"
+
 namespace lodestone::detail {
 namespace {
-
-struct FloatVec {
-  float x = 0, y = 0, z = 0;
-  explicit FloatVec(const Vec3& v)
-      : x(static_cast<float>(v.x)), y(static_cast<float>(v.y)), z(static_cast<float>(v.z)) {}
-  float dot(float px, float py, float pz) const { return px * x + py * y + pz * z; }
-};
-
-float inverse(double square) { return square > 0 ? static_cast<float>(1 / square) : 0.0F; }
-
-/// A segment; points come relative to its start.
-struct Segment {
-  FloatVec direction;
-  float inverse_square;
-
-  explicit Segment(const Vec3& d) : direction(d), inverse_square(inverse(squared_length(d))) {}
-  float squared_distance(float x, float y, float z) const {
-    const float along = direction.dot(x, y, z) * inverse_square;
-    const float t = std::min(std::max(along, 0.0F), 1.0F);
-    const float ex = x - t * direction.x, ey = y - t * direction.y, ez = z - t * direction.z;
-    return ex * ex + ey * ey + ez * ez;
-  }
-};
 
 /// A triangle relative to its first corner, with two of its edges; s and t lead to its other corners.
 struct Face {
   FloatVec normal, inside_first, inside_second, inside_third, second_start;
   float inverse_normal;
   float second_level;
-  Segment first, second;
+  FloatSegment first, second;
 
   Face(const Vec3& s, const Vec3& t) : Face(s, t, cross(s, t), cross(cross(s, t), t - s)) {}
 
@@ -48,7 +28,7 @@ struct Face {
         inside_second(across),
         inside_third(cross(t, n)),
         second_start(s),
-        inverse_normal(inverse(squared_length(n))),
+        inverse_normal(inverse_of(squared_length(n))),
         second_level(static_cast<float>(dot(across, s))),
         first(s),
         second(t - s) {}
@@ -56,10 +36,7 @@ struct Face {
 
 }  // namespace
 
-// The same instructions on wider vectors give the same numbers: there is no fused multiply-add (see LodestoneTarget).
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default")))
-#endif
+LODESTONE_WIDE_VECTORS
 void squared_distances(const PointBatch& points, const Patch& patch, float* out) {
   const float* px = points.x();
   const float* py = points.y();
@@ -83,7 +60,7 @@ void squared_distances(const PointBatch& points, const Patch& patch, float* out)
       out[i] = std::min(out[i], nearest);
     }
     if (t.a != 0 || t.c + std::size_t{1} != patch.corners.size()) continue;
-    const Segment third(patch.corners[t.c] - corner);
+    const FloatSegment third(patch.corners[t.c] - corner);
     for (std::size_t i = 0; i < count; ++i)
       out[i] = std::min(out[i], third.squared_distance(px[i] - a.x, py[i] - a.y, pz[i] - a.z));
   }

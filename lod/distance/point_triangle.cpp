@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "distance/float_segment.h"
+#include "distance/wide_vectors.h"
+
 // Distances from many points to one triangle without branches: over its inside the distance is that to its plane,
 // elsewhere to its nearest edge. Case analyses such as C. Ericson's ("Real-Time Collision Detection", 2005,
 // section 5.1.5) find the same with less arithmetic for one point, but do not vectorise.
@@ -9,40 +12,21 @@
 namespace lodestone::detail {
 namespace {
 
-struct FloatVec {
-  float x, y, z;
-  explicit FloatVec(const Vec3& v)
-      : x(static_cast<float>(v.x)), y(static_cast<float>(v.y)), z(static_cast<float>(v.z)) {}
-};
-
-/// Everything about one edge that does not depend on the point: its start, direction and the normal pointing inwards.
+/// Everything about one edge that does not depend on the point: its start, itself and the normal pointing inwards.
 struct EdgeFrame {
-  FloatVec start, direction, inward;
-  float inverse_square;
+  FloatVec start, inward;
+  FloatSegment edge;
 
-  EdgeFrame(const Vec3& a, const Vec3& b, const Vec3& normal)
-      : start(a), direction(b - a), inward(cross(normal, b - a)) {
-    const double square = squared_length(b - a);
-    inverse_square = square > 0 ? static_cast<float>(1 / square) : 0.0F;
-  }
-  float side(float x, float y, float z) const {
-    return (x - start.x) * inward.x + (y - start.y) * inward.y + (z - start.z) * inward.z;
-  }
+  EdgeFrame(const Vec3& a, const Vec3& b, const Vec3& normal) : start(a), inward(cross(normal, b - a)), edge(b - a) {}
+  float side(float x, float y, float z) const { return inward.dot(x - start.x, y - start.y, z - start.z); }
   float squared_distance(float x, float y, float z) const {
-    const float dx = x - start.x, dy = y - start.y, dz = z - start.z;
-    const float along = (dx * direction.x + dy * direction.y + dz * direction.z) * inverse_square;
-    const float t = std::min(std::max(along, 0.0F), 1.0F);
-    const float ex = dx - t * direction.x, ey = dy - t * direction.y, ez = dz - t * direction.z;
-    return ex * ex + ey * ey + ez * ez;
+    return edge.squared_distance(x - start.x, y - start.y, z - start.z);
   }
 };
 
 }  // namespace
 
-// The same instructions on wider vectors give the same numbers: there is no fused multiply-add (see LodestoneTarget).
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default")))
-#endif
+LODESTONE_WIDE_VECTORS
 void squared_distances(const PointBatch& points, const std::array<Vec3, 3>& triangle, float* out) {
   const Vec3 normal = normalized(cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
   const FloatVec n(normal);
@@ -55,7 +39,7 @@ void squared_distances(const PointBatch& points, const std::array<Vec3, 3>& tria
   const std::size_t count = points.padded_size() / PointBatch::kLanes * PointBatch::kLanes;
   for (std::size_t i = 0; i < count; ++i) {
     const float x = px[i], y = py[i], z = pz[i];
-    const float height = (x - e0.start.x) * n.x + (y - e0.start.y) * n.y + (z - e0.start.z) * n.z;
+    const float height = n.dot(x - e0.start.x, y - e0.start.y, z - e0.start.z);
     const float side = std::min(std::min(e0.side(x, y, z), e1.side(x, y, z)), e2.side(x, y, z));
     const float edge =
         std::min(std::min(e0.squared_distance(x, y, z), e1.squared_distance(x, y, z)), e2.squared_distance(x, y, z));

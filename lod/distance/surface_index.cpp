@@ -25,6 +25,7 @@
 #include "distance/face_order.h"
 #include "distance/point_spread.h"
 #include "distance/triangle.h"
+#include "distance/wide_vectors.h"
 
 namespace lodestone {
 namespace {
@@ -417,12 +418,8 @@ SurfaceIndex::~SurfaceIndex() = default;
 SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
 SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 
-// Wider vectors give the same numbers: there is no fused multiply-add (see LodestoneTarget).
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default"), flatten))
-#endif
-SurfaceIndex::Hit
-SurfaceIndex::nearest(const Vec3& p, double limit, Index hint) const {
+[[gnu::flatten]] LODESTONE_WIDE_VECTORS SurfaceIndex::Hit SurfaceIndex::nearest(const Vec3& p, double limit,
+                                                                                Index hint) const {
   Search search(*impl_, p, limit);
   if (empty()) return search.result();
   assert(hint == kNoIndex || hint < impl_->places.size());

@@ -7,11 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "distance/wide_vectors.h"
+
 namespace lodestone::detail {
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("avx2", "default")))
-#endif
+LODESTONE_WIDE_VECTORS
 void angles(std::size_t count, const double* cosine, const double* sine, double* angle) {
   for (std::size_t i = 0; i < count; ++i) {
     const double x = std::abs(cosine[i]);

@@ -8,16 +8,11 @@ namespace lodestone::detail {
 
 void EvaluatorPool::for_each(std::size_t count, std::size_t chunk,
                              const std::function<void(RemovalEvaluator&, std::size_t)>& job) {
-  const auto run = [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
     std::unique_ptr<RemovalEvaluator> evaluator = take();
     for (std::size_t i = begin; i < end; ++i) job(*evaluator, i);
     give_back(std::move(evaluator));
-  };
-  if (count <= chunk) {
-    if (count > 0) run(0, count);
-  } else {
-    for_each_chunk(count, chunk, run);
-  }
+  });
 }
 
 std::unique_ptr<RemovalEvaluator> EvaluatorPool::take() {
