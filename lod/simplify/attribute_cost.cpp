@@ -89,6 +89,14 @@ double AttributeCost::squared_difference(Index wedge, const Place& place, const 
   return sum;
 }
 
+bool AttributeCost::turns_texture(Index a, Index b, Index c, const AttributeScale& scale) const {
+  for (std::size_t i = 0; i < texture_count(); ++i) {
+    const int orientation = scale.orientation[i];
+    if (orientation != 0 && !(orientation * texture_area(i, a, b, c) > 0)) return true;
+  }
+  return false;
+}
+
 double AttributeCost::difference(const Channel& channel, Index wedge, const Place& place) const {
   const std::vector<float>& values =
       channel.kind == Kind::Texture ? textures_.coordinates(channel.texture) : channel.values;

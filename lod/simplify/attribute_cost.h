@@ -2,12 +2,16 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include <lodestone/core/detail/texture_areas.h>
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/triangulation.h>
 #include <lodestone/lod/simplify_options.h>
+
+#include "distance/triangle.h"
 
 namespace lodestone::detail {
 
@@ -42,6 +46,24 @@ class AttributeCost {
   };
   /// Returns the squared length that stands for the difference between a wedge and a place on the new surface.
   double squared_difference(Index wedge, const Place& place, const AttributeScale& scale) const;
+  /// The same for the place nearest to where the wedge is on new faces, whose corners `position_at` and `wedge_at`
+  /// name.
+  template <class PositionAt, class WedgeAt>
+  double squared_difference(Index wedge, const Vec3& at, std::span<const PolygonTriangle> triangles,
+                            const PositionAt& position_at, const WedgeAt& wedge_at, const AttributeScale& scale) const {
+    double least = std::numeric_limits<double>::infinity();
+    Place place;
+    for (const PolygonTriangle t : triangles) {
+      const Barycentric nearest = nearest_weights(at, {position_at(t.a), position_at(t.b), position_at(t.c)});
+      if (nearest.squared_distance >= least) continue;
+      least = nearest.squared_distance;
+      place = {{wedge_at(t.a), wedge_at(t.b), wedge_at(t.c)}, nearest.weights};
+    }
+    return squared_difference(wedge, place, scale);
+  }
+
+  /// Whether a texture would be turned over or lose its area on a new face, where it did neither on the old ones.
+  bool turns_texture(Index a, Index b, Index c, const AttributeScale& scale) const;
 
   /// Returns twice the signed area of three wedges in a texture channel.
   double texture_area(std::size_t texture, Index a, Index b, Index c) const { return textures_.area(texture, a, b, c); }

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "distance/point_patch.h"
-#include "distance/triangle.h"
 #include "simplify/angles.h"
 
 namespace lodestone::detail {
@@ -21,7 +20,11 @@ PlainEvaluator::PlainEvaluator(const SimplifyState& state, const SimplifyOptions
 Evaluation PlainEvaluator::evaluate(Choice& choice) {
   if (!is_simple(star_, state_->connectivity)) return {Verdict::Link};
   start();
-  if (measured_ > 0) gather_points();
+  if (measured_ > 0) {
+    points_.start();
+    for (std::size_t i = 0; i < star_.size; ++i)
+      points_.add_face(state_->points, face_of_corner(star_.corner[i]), star_.center);
+  }
   rank();
   Verdict verdict = Verdict::Ring;
   Displacement moved;
@@ -59,34 +62,20 @@ Evaluation PlainEvaluator::describe(const Choice& choice, RemovalRecord& record,
   if (star_.size > kMaxTabulatedPolygon && choice[0] == star_.size) rank();
   const Triangles triangles = filling(choice[0]);
   if (const Verdict verdict = judge(triangles); rejects(verdict)) return {verdict};
-  record.vertex = star_.vertex;
-  record.target = kNoIndex;
-  record.open_star = false;
-  record.sectors.resize(1);
-  SectorPatch& sector = record.sectors.front();
-  sector.center = star_.wedge;
-  sector.shape = SectorShape::Closed;
-  sector.lone_outer = kNoIndex;
-  sector.starts_at_crease = false;
-  sector.polygon.assign(star_.ring_wedge.begin(), star_.ring_wedge.begin() + static_cast<std::ptrdiff_t>(star_.size));
-  sector.triangles.assign(triangles.begin(), triangles.end());
-  sector.faces.clear();
-  sector.rotation.clear();
-  for (std::size_t i = 0; i < star_.size; ++i) {
-    sector.faces.push_back(face_of_corner(star_.corner[i]));
-    sector.rotation.push_back(static_cast<std::uint8_t>(star_.corner[i] % 3));
-  }
+  described_.corners.assign(star_.corner.begin(), star_.corner.begin() + static_cast<std::ptrdiff_t>(star_.size));
+  described_.sector_begin.assign(1, 0);
+  described_.closed = true;
+  describe_removal(state_->connectivity, described_, record);
+  record.sectors.front().triangles.assign(triangles.begin(), triangles.end());
   const double turned = curvature_error(triangles);
   curvature.assign(curvature_after_.begin(), curvature_after_.begin() + static_cast<std::ptrdiff_t>(star_.size));
   return {Verdict::Legal, 0, turned};
 }
 
-/// Forgets what was known of the last star, and sums up this one.
+/// Forgets what was known of the last star.
 void PlainEvaluator::start() {
   ++star_number_;
   links_known_ = 0;
-  normal_ = {};
-  for (std::size_t i = 0; i < star_.size; ++i) normal_ += star_.normal[i];
   if (!attributes_->empty()) scale_ = attribute_scale();
 }
 
@@ -108,7 +97,7 @@ void PlainEvaluator::rank() {
 }
 
 void PlainEvaluator::rank_all() {
-  std::array<double, kMaxTabulatedPolygon*(kMaxTabulatedPolygon - 1) * (kMaxTabulatedPolygon - 2) / 6> volume;
+  std::array<double, triangle_count(kMaxTabulatedPolygon)> volume;
   std::size_t number = 0;  // in the order of triangle_number
   for (std::size_t c = 2; c < star_.size; ++c)
     for (std::size_t b = 1; b < c; ++b) {
@@ -169,7 +158,9 @@ Verdict PlainEvaluator::judge(PolygonTriangle t) {
   if (rejects(judged.verdict)) return judged.verdict;
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}})
     if (!is_rim(from, to) && is_linked(from, to)) judged.verdict = Verdict::Link;
-  if (!rejects(judged.verdict) && turns_texture(t)) judged.verdict = Verdict::Texture;
+  const PlainStar::Ring<Index>& wedge = star_.ring_wedge;
+  if (!rejects(judged.verdict) && attributes_->turns_texture(wedge[t.a], wedge[t.b], wedge[t.c], scale_))
+    judged.verdict = Verdict::Texture;
   return judged.verdict;
 }
 
@@ -180,15 +171,14 @@ Verdict PlainEvaluator::judge_shape(PolygonTriangle t) const {
   const Vec3 normal = cross(b - a, c - a);
   const double square = squared_length(normal);
   const double longest = squared_longest_edge(a, b, c);
-  if (!star_.least_shape.is_met(square, longest)) return Verdict::Shape;
-  if (star_.has_directions && !rules_->has_direction(square, longest)) return Verdict::Shape;
+  if (rules_->is_too_thin(square, longest, star_.faces)) return Verdict::Shape;
   bool at_rim = false;
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
     if (!is_rim(from, to) || !star_.has_direction[from]) continue;
     at_rim = true;
     if (rules_->turns_too_far(normal, star_.normal[from])) return Verdict::Turn;
   }
-  return rules_->limits_turns() && !at_rim && dot(normal, normal_) <= 0 ? Verdict::Turn : Verdict::Legal;
+  return !at_rim && rules_->looks_away(normal, star_.faces) ? Verdict::Turn : Verdict::Legal;
 }
 
 bool PlainEvaluator::is_linked(std::size_t a, std::size_t b) {
@@ -198,49 +188,24 @@ bool PlainEvaluator::is_linked(std::size_t a, std::size_t b) {
   return (linked_[a] >> b & 1) != 0;
 }
 
-/// Whether a texture would be turned over or lose its area on a new face, where it did neither on the old ones.
-bool PlainEvaluator::turns_texture(PolygonTriangle t) const {
-  for (std::size_t i = 0; i < attributes_->texture_count(); ++i) {
-    const int orientation = scale_.orientation[i];
-    if (orientation == 0) continue;
-    const double area =
-        attributes_->texture_area(i, star_.ring_wedge[t.a], star_.ring_wedge[t.b], star_.ring_wedge[t.c]);
-    if (!(orientation * area > 0)) return true;
-  }
-  return false;
-}
-
-void PlainEvaluator::gather_points() {
-  points_.clear();
-  weights_.assign(1, 1.0F);
-  points_.add({});
-  distance_before_ = 0;
-  const CarriedPoints& carried = state_->points;
-  for (std::size_t i = 0; i < star_.size; ++i)
-    for (Index p = carried.first(face_of_corner(star_.corner[i])); p != kNoIndex; p = carried[p].next) {
-      points_.add(Vec3(carried[p].position) - star_.center);
-      weights_.push_back(carried[p].weight);
-      distance_before_ += static_cast<double>(carried[p].weight * carried[p].squared_distance);
-    }
-}
-
 /// What the carried points are charged for by a filling.
 double PlainEvaluator::squared_distance(Triangles triangles) {
-  nearest_.resize(points_.padded_size());
-  squared_distances(points_, Patch{{star_.spoke.data(), star_.size}, triangles}, nearest_.data());
+  nearest_.resize(points_.places.padded_size());
+  squared_distances(points_.places, Patch{{star_.spoke.data(), star_.size}, triangles}, nearest_.data());
   float sum = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) sum += weights_[i] * rules_->beyond_rounding(nearest_[i]);
-  return charged_distance(static_cast<double>(sum), distance_before_);
+  for (std::size_t i = 0; i < points_.places.size(); ++i)
+    sum += points_.weights[i] * rules_->beyond_rounding(nearest_[i]);
+  return charged_distance(static_cast<double>(sum), points_.squared_distance_before);
 }
 
 /// Sums the squared distances of the new faces' centroids and the new edges' midpoints to the star: the surface where
 /// nothing was, as over a notch that the carried points do not see.
 double PlainEvaluator::bridge_sum(Triangles triangles) {
-  points_.clear();
+  bridge_.clear();
   for (const PolygonTriangle t : triangles) {
-    points_.add((star_.spoke[t.a] + star_.spoke[t.b] + star_.spoke[t.c]) * (1.0 / 3));
+    bridge_.add((star_.spoke[t.a] + star_.spoke[t.b] + star_.spoke[t.c]) * (1.0 / 3));
     for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}})
-      if (!is_rim(from, to)) points_.add((star_.spoke[from] + star_.spoke[to]) * 0.5);
+      if (!is_rim(from, to)) bridge_.add((star_.spoke[from] + star_.spoke[to]) * 0.5);
   }
   std::array<Vec3, PlainStar::kMaxSize + 1> corners;  // the vertex itself is the first
   std::array<PolygonTriangle, PlainStar::kMaxSize> faces;
@@ -248,10 +213,10 @@ double PlainEvaluator::bridge_sum(Triangles triangles) {
     corners[i + 1] = star_.spoke[i];
     faces[i] = {0, static_cast<std::uint8_t>(i + 1), static_cast<std::uint8_t>(star_.after(i) + 1)};
   }
-  nearest_.resize(points_.padded_size());
-  squared_distances(points_, Patch{{corners.data(), star_.size + 1}, {faces.data(), star_.size}}, nearest_.data());
+  nearest_.resize(bridge_.padded_size());
+  squared_distances(bridge_, Patch{{corners.data(), star_.size + 1}, {faces.data(), star_.size}}, nearest_.data());
   float sum = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) sum += rules_->beyond_rounding(nearest_[i]);
+  for (std::size_t i = 0; i < bridge_.size(); ++i) sum += rules_->beyond_rounding(nearest_[i]);
   return static_cast<double>(sum);
 }
 
@@ -263,17 +228,9 @@ AttributeScale PlainEvaluator::attribute_scale() const {
 
 /// Compares the removed wedge's attributes with those of the nearest point of the new faces.
 double PlainEvaluator::squared_attribute_difference(Triangles triangles) const {
-  const auto position = [&](std::size_t i) { return state_->mesh.positions[star_.ring_vertex[i]]; };
-  double least = std::numeric_limits<double>::infinity();
-  AttributeCost::Place place;
-  for (const PolygonTriangle t : triangles) {
-    const Barycentric nearest = nearest_weights(star_.center, {position(t.a), position(t.b), position(t.c)});
-    if (nearest.squared_distance >= least) continue;
-    least = nearest.squared_distance;
-    place.weights = nearest.weights;
-    place.wedges = {star_.ring_wedge[t.a], star_.ring_wedge[t.b], star_.ring_wedge[t.c]};
-  }
-  return attributes_->squared_difference(star_.wedge, place, scale_);
+  const auto position_at = [&](std::size_t i) { return state_->mesh.positions[star_.ring_vertex[i]]; };
+  const auto wedge_at = [&](std::size_t i) { return star_.ring_wedge[i]; };
+  return attributes_->squared_difference(star_.wedge, star_.center, triangles, position_at, wedge_at, scale_);
 }
 
 /// The largest change of K̄ among the ring's vertices, by the angles at them in the star's faces and in the new ones.

@@ -8,12 +8,12 @@
 #include <lodestone/core/removal.h>
 #include <lodestone/lod/simplify_options.h>
 
-#include "distance/point_triangle.h"
 #include "simplify/attribute_cost.h"
 #include "simplify/plain_star.h"
 #include "simplify/polygon_fills.h"
 #include "simplify/removal_cost.h"
 #include "simplify/simplify_state.h"
+#include "simplify/star_points.h"
 
 namespace lodestone::detail {
 
@@ -45,8 +45,6 @@ class PlainEvaluator {
  private:
   using Triangles = std::span<const PolygonTriangle>;
   static constexpr std::size_t kMaxFillings = 42;  // of a ring of kMaxTabulatedPolygon
-  static constexpr std::size_t kMaxTriangles =
-      PlainStar::kMaxSize * (PlainStar::kMaxSize - 1) * (PlainStar::kMaxSize - 2) / 6;
   struct Filling {
     double squared_volume = 0;
     std::uint8_t which = 0;
@@ -68,9 +66,7 @@ class PlainEvaluator {
   Verdict judge_shape(PolygonTriangle t) const;
   bool is_rim(std::size_t from, std::size_t to) const { return star_.after(from) == to; }
   bool is_linked(std::size_t a, std::size_t b);
-  bool turns_texture(PolygonTriangle t) const;
   double squared_distance(Triangles triangles);
-  void gather_points();
   double bridge_sum(Triangles triangles);
   AttributeScale attribute_scale() const;
   double squared_attribute_difference(Triangles triangles) const;
@@ -84,20 +80,19 @@ class PlainEvaluator {
 
   PlainStar star_;
   std::uint32_t star_number_ = 0;
-  Vec3 normal_;  // the sum of the star's
   std::array<Filling, kMaxFillings> fillings_;
   std::size_t filling_count_ = 0;
-  std::array<Judged, kMaxTriangles> judged_;
+  std::array<Judged, triangle_count(PlainStar::kMaxSize)> judged_;
   PlainStar::Ring<std::uint32_t> linked_{};  // by ring vertex, see linked_ring
   std::uint32_t links_known_ = 0;            // by ring vertex
   PlainStar::Ring<double> curvature_after_{};
   PolygonFills fills_;
   std::vector<PolygonTriangle> least_volume_;  // the filling of a large ring
   AttributeScale scale_;
-  PointBatch points_;
-  std::vector<float> weights_;  // of those points
+  StarPoints points_;
+  PointBatch bridge_;  // points of new faces
   std::vector<float> nearest_;
-  double distance_before_ = 0;  // their squared distances to the star, weighted and summed
+  Star described_;
 };
 
 }  // namespace lodestone::detail

@@ -1,29 +1,8 @@
 #include "simplify/plain_star.h"
 
+#include "simplify/site_walk.h"
+
 namespace lodestone::detail {
-namespace {
-
-/// Calls `visit(vertex)` for the vertices that an edge joins to a vertex or one of its copies, until one is true.
-template <class Visit>
-bool any_neighbour(const Connectivity& mesh, Index vertex, const Visit& visit) {
-  for (Index copy = vertex;;) {
-    const Index start = mesh.corner_at(copy);
-    Index last = kNoIndex;
-    for (Index corner = start; corner != kNoIndex;) {
-      last = corner;
-      if (visit(mesh.vertex(next_corner(corner)), corner)) return true;
-      corner = mesh.swing_left(corner);
-      if (corner == start) last = kNoIndex;
-      if (corner == start) break;
-    }
-    // At a border no other corner has seen the last one.
-    if (last != kNoIndex && visit(mesh.vertex(previous_corner(last)), kNoIndex)) return true;
-    copy = mesh.next_copy(copy);
-    if (copy == vertex) return false;
-  }
-}
-
-}  // namespace
 
 bool PlainStar::gather(const Mesh& mesh, const Connectivity& connectivity, const FaceRules& rules, Index of_vertex) {
   vertex = of_vertex;
@@ -57,8 +36,7 @@ bool PlainStar::gather_ring(const Connectivity& connectivity) {
 
 void PlainStar::gather_shapes(const Mesh& mesh, const FaceRules& rules) {
   for (std::size_t i = 0; i < size; ++i) spoke[i] = Vec3(mesh.positions[ring_vertex[i]]) - center;
-  has_directions = true;
-  least_shape = {};
+  faces = {};
   for (std::size_t i = 0; i < size; ++i) {
     const Vec3& a = spoke[i];
     const Vec3& b = spoke[after(i)];
@@ -66,8 +44,7 @@ void PlainStar::gather_shapes(const Mesh& mesh, const FaceRules& rules) {
     squared_normal[i] = squared_length(normal[i]);
     const double longest = squared_longest_edge({}, a, b);
     has_direction[i] = rules.has_direction(squared_normal[i], longest);
-    has_directions = has_directions && has_direction[i];
-    least_shape.add(squared_normal[i], longest);
+    rules.add(normal[i], longest, faces);
   }
 }
 
@@ -76,23 +53,16 @@ bool is_simple(const PlainStar& star, const Connectivity& mesh) {
   for (std::size_t i = 0; i < star.size; ++i)
     for (std::size_t j = i + 1; j < star.size; ++j)
       if (site(i) == site(j)) return false;
-  if (star.size > 3) return true;
-  const auto over_star = [&](Index, Index corner) {
-    if (corner == kNoIndex) return false;
-    const Index b = mesh.site(mesh.vertex(next_corner(corner)));
-    const Index c = mesh.site(mesh.vertex(previous_corner(corner)));
-    return (b == site(1) && c == site(2)) || (b == site(2) && c == site(1));
-  };
-  return !any_neighbour(mesh, star.ring_vertex[0], over_star);
+  return star.size > 3 || !(has_face(mesh, star.ring_vertex[0], site(1), site(2)) ||
+                            has_face(mesh, star.ring_vertex[0], site(2), site(1)));
 }
 
 std::uint32_t linked_ring(const PlainStar& star, const Connectivity& mesh, std::size_t to) {
   std::uint32_t linked = 0;
-  any_neighbour(mesh, star.ring_vertex[to], [&](Index neighbour, Index) {
+  for_each_neighbour(mesh, star.ring_vertex[to], [&](Index, Index neighbour) {
     const Index site = mesh.site(neighbour);
     for (std::size_t k = 0; k < star.size; ++k)
       if (mesh.site(star.ring_vertex[k]) == site) linked |= std::uint32_t{1} << k;
-    return false;
   });
   return linked;
 }

@@ -7,6 +7,7 @@
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/mesh.h>
 
+#include "simplify/polygon_fills.h"
 #include "simplify/removal_rules.h"
 
 namespace lodestone::detail {
@@ -14,7 +15,7 @@ namespace lodestone::detail {
 /// The star of a vertex with a closed ring and no constrained edge, as it is for most vertices: all that the ways to
 /// fill its hole are judged by, in fixed arrays. Coordinates are relative to the vertex.
 struct PlainStar {
-  static constexpr std::size_t kMaxSize = 16;
+  static constexpr std::size_t kMaxSize = kMaxSearchedPolygon;
   template <class T>
   using Ring = std::array<T, kMaxSize>;
 
@@ -29,8 +30,7 @@ struct PlainStar {
   Ring<Vec3> normal;  ///< of face i, twice its area long
   Ring<double> squared_normal;
   Ring<bool> has_direction;  ///< whether a face's normal is more than rounding
-  bool has_directions = true;
-  FaceRules::LeastShape least_shape;
+  FaceRules::Replaced faces;
 
   /// Looks at a vertex that is not one of several copies. False where its star is not plain, or too large: then nothing
   /// else is told.

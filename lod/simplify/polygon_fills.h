@@ -10,6 +10,9 @@
 
 namespace lodestone::detail {
 
+/// Larger polygons are filled with fans alone; up to here the triangulation that sweeps the least volume is found, too.
+inline constexpr int kMaxSearchedPolygon = 16;
+
 /// Triangulations of polygons too large for a table. What a function returns stands until it is called again.
 class PolygonFills {
  public:

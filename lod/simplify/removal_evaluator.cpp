@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "distance/triangle.h"
+#include "simplify/site_walk.h"
 
 namespace lodestone::detail {
 namespace {
@@ -44,7 +44,7 @@ RemovalEvaluator::RemovalEvaluator(const SimplifyState& state, const SimplifyOpt
   fully_ranked_ = measured_triangulations(options);
   needs_angles_ = options.metric != Metric::Mean;
   needs_dihedrals_ = options.metric == Metric::Mean || options.metric == Metric::Principal;
-  table_.resize(kMaxSearchedPolygon * (kMaxSearchedPolygon - 1) * (kMaxSearchedPolygon - 2) / 6);
+  table_.resize(triangle_count(kMaxSearchedPolygon));
   // Ties are broken on the metric's own scale: K̄ is an angle, the others are lengths.
   const double diagonal = bounding_box(state.mesh).diagonal();
   tie_scale_ = options.metric == Metric::Gaussian && diagonal > 0 ? 1 / diagonal : 1;
@@ -188,46 +188,15 @@ bool RemovalEvaluator::gather_links(Index vertex) {
     for (std::uint8_t* l : {&linked_[from * ring_size() + to], &linked_[to * ring_size() + from]})
       *l = *l | (here ? kLinkedHere : kLinkedElsewhere);
   };
-  const auto link_all = [&](Index from, Index at) {
-    const Index start = mesh.corner_at(at);
-    if (start == kNoIndex) return;
-    Index corner = start;
-    for (Index left = start; left != kNoIndex;) {
-      corner = left;
-      link(from, at, mesh.vertex(next_corner(corner)));
-      left = mesh.swing_left(corner);
-      if (left == start) break;
-    }
-    link(from, at, mesh.vertex(previous_corner(corner)));  // at a border no other corner has seen it
-  };
-  for (Index i = 0; i < ring_size() && ring_size() > 2; ++i) {
-    link_all(i, ring_vertex_[i]);
-    for (Index copy = mesh.next_copy(ring_vertex_[i]); copy != ring_vertex_[i]; copy = mesh.next_copy(copy))
-      link_all(i, copy);
-  }
+  for (Index i = 0; i < ring_size() && ring_size() > 2; ++i)
+    for_each_neighbour(mesh, ring_vertex_[i], [&](Index at, Index neighbour) { link(i, at, neighbour); });
   for (const Index v : ring_vertex_) ring_of_site_[mesh.site(v)] = kNoIndex;
   if (ring_size() == 3 && star_.closed) {
-    simple = simple && !has_face(0, 1, 2) && !has_face(0, 2, 1);
+    const Index second = mesh.site(ring_vertex_[1]), third = mesh.site(ring_vertex_[2]);
+    simple =
+        simple && !has_face(mesh, ring_vertex_[0], second, third) && !has_face(mesh, ring_vertex_[0], third, second);
   }
   return simple && ring_vertex_[0] != vertex;
-}
-
-/// Whether a face joins three vertices of the ring in this order, in any sheet.
-bool RemovalEvaluator::has_face(std::size_t first, std::size_t second, std::size_t third) const {
-  const Connectivity& mesh = state_->connectivity;
-  const auto site = [&](std::size_t i) { return mesh.site(ring_vertex_[i]); };
-  for (Index copy = ring_vertex_[first];;) {
-    const Index start = mesh.corner_at(copy);
-    for (Index corner = start; corner != kNoIndex;) {
-      if (mesh.site(mesh.vertex(next_corner(corner))) == site(second) &&
-          mesh.site(mesh.vertex(previous_corner(corner))) == site(third))
-        return true;
-      corner = mesh.swing_left(corner);
-      if (corner == start) break;
-    }
-    copy = mesh.next_copy(copy);
-    if (copy == ring_vertex_[first]) return false;
-  }
 }
 
 /// Whether the vertex may move along a spoke at all: a border vertex only along the border, and a vertex at which one
@@ -276,8 +245,7 @@ void RemovalEvaluator::take_sectors(RemovalRecord& record, std::size_t target) {
     sector.patch = &patch;
     sector.ring_begin = ring_begin;
     sector.target = target;
-    gather_shapes(sector);
-    for (std::size_t i = 0; i < patch.face_count(); ++i) sector.normal += fine_normal_[ring_begin + i];
+    gather_faces(sector);
     if (!attributes_->empty()) sector.scale = attribute_scale(patch, ring_begin);
     ring_begin += patch.face_count();
   }
@@ -292,13 +260,11 @@ void RemovalEvaluator::take_lines(std::size_t target) {
       lines_.push_back({target, spoke, line_weight(spoke), lines_.empty() && is_constrained_spoke(target)});
 }
 
-/// Collects what the shapes of a sector's new faces are compared with.
-void RemovalEvaluator::gather_shapes(Sector& sector) const {
-  for (std::size_t i = sector.ring_begin; i < sector.ring_begin + sector.patch->face_count(); ++i) {
-    sector.least_shape.add(squared_length(fine_normal_[i]),
-                           squared_longest_edge(center_, ring_position_[i], ring_position_[(i + 1) % ring_size()]));
-    sector.has_directions = sector.has_directions && has_direction_[i] != 0;
-  }
+/// Collects what a sector's new faces are compared with.
+void RemovalEvaluator::gather_faces(Sector& sector) const {
+  for (std::size_t i = sector.ring_begin; i < sector.ring_begin + sector.patch->face_count(); ++i)
+    rules_->add(fine_normal_[i],
+                squared_longest_edge(center_, ring_position_[i], ring_position_[(i + 1) % ring_size()]), sector.faces);
 }
 
 AttributeScale RemovalEvaluator::attribute_scale(const SectorPatch& patch, std::size_t ring_begin) const {
@@ -386,7 +352,7 @@ Verdict RemovalEvaluator::judge_filled(Sector& sector, const SectorPatch& patch)
 
 void RemovalEvaluator::reset_triangles(std::size_t size) {
   if (size > kMaxSearchedPolygon) return;
-  const std::size_t used = size * (size - 1) * (size - 2) / 6;
+  const auto used = static_cast<std::size_t>(triangle_count(static_cast<int>(size)));
   for (std::size_t i = 0; i < used; ++i) table_[i].known = table_[i].has_angles = table_[i].has_distances = false;
 }
 
@@ -406,8 +372,7 @@ RemovalEvaluator::Triangle& RemovalEvaluator::triangle(const Sector& sector, Pol
 Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const Triangle& entry) const {
   const double square = squared_length(entry.normal);
   const double longest = squared_longest_edge(position(sector, t.a), position(sector, t.b), position(sector, t.c));
-  if (!sector.least_shape.is_met(square, longest)) return Verdict::Shape;
-  if (sector.has_directions && !rules_->has_direction(square, longest)) return Verdict::Shape;
+  if (rules_->is_too_thin(square, longest, sector.faces)) return Verdict::Shape;
   bool at_rim = false;
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}}) {
     if (!is_rim(sector, from, to)) {
@@ -419,19 +384,10 @@ Verdict RemovalEvaluator::judge(const Sector& sector, PolygonTriangle t, const T
     at_rim = true;
     if (rules_->turns_too_far(entry.normal, fine_normal_[sector.ring_begin + from])) return Verdict::Turn;
   }
-  if (rules_->limits_turns() && !at_rim && dot(entry.normal, sector.normal) <= 0) return Verdict::Turn;
-  return attributes_->texture_count() > 0 && turns_texture(sector, t) ? Verdict::Texture : Verdict::Legal;
-}
-
-/// Whether a texture would be turned over or lose its area on a new face, where it did neither on the old ones.
-bool RemovalEvaluator::turns_texture(const Sector& sector, PolygonTriangle t) const {
+  if (!at_rim && rules_->looks_away(entry.normal, sector.faces)) return Verdict::Turn;
   const std::vector<Index>& polygon = sector.patch->polygon;
-  for (std::size_t i = 0; i < attributes_->texture_count(); ++i) {
-    const int orientation = sector.scale.orientation[i];
-    if (orientation == 0) continue;
-    if (!(orientation * attributes_->texture_area(i, polygon[t.a], polygon[t.b], polygon[t.c]) > 0)) return true;
-  }
-  return false;
+  const bool turns = attributes_->turns_texture(polygon[t.a], polygon[t.b], polygon[t.c], sector.scale);
+  return turns ? Verdict::Texture : Verdict::Legal;
 }
 
 /// Judges a whole triangulation; an empty one is none.
@@ -521,30 +477,20 @@ double RemovalEvaluator::tie_break(double squared_volume) const {
 }
 
 void RemovalEvaluator::gather_points(const Sector& sector) {
-  points_.clear();
-  weights_.assign(1, 1.0F);
-  points_.add({});
-  distance_before_ = 0;
-  const CarriedPoints& carried = state_->points;
-  for (const Index face : sector.patch->faces) {
-    for (Index p = carried.first(face); p != kNoIndex; p = carried[p].next) {
-      points_.add(Vec3(carried[p].position) - center_);
-      weights_.push_back(carried[p].weight);
-      distance_before_ += static_cast<double>(carried[p].weight * carried[p].squared_distance);
-    }
-  }
+  points_.start();
+  for (const Index face : sector.patch->faces) points_.add_face(state_->points, face, center_);
 }
 
 void RemovalEvaluator::measure_distances(const Sector& sector, PolygonTriangle t, Triangle& entry) {
-  entry.squared_distance.resize(points_.padded_size());
-  squared_distances(points_,
+  entry.squared_distance.resize(points_.places.padded_size());
+  squared_distances(points_.places,
                     {position(sector, t.a) - center_, position(sector, t.b) - center_, position(sector, t.c) - center_},
                     entry.squared_distance.data());
   entry.has_distances = true;
 }
 
 double RemovalEvaluator::added_squared_distance(const Sector& sector, Triangles triangles) {
-  nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
+  nearest_.assign(points_.places.size(), std::numeric_limits<float>::infinity());
   for (const PolygonTriangle t : triangles) {
     Triangle& entry = triangle(sector, t);
     if (!entry.has_distances) measure_distances(sector, t, entry);
@@ -552,8 +498,8 @@ double RemovalEvaluator::added_squared_distance(const Sector& sector, Triangles 
   }
   double sum = 0;
   for (std::size_t i = 0; i < nearest_.size(); ++i)
-    sum += static_cast<double>(weights_[i] * rules_->beyond_rounding(nearest_[i]));
-  return charged_distance(sum, distance_before_);
+    sum += static_cast<double>(points_.weights[i] * rules_->beyond_rounding(nearest_[i]));
+  return charged_distance(sum, points_.squared_distance_before);
 }
 
 double RemovalEvaluator::curvature_change(Sector& sector, Triangles triangles) {
@@ -635,20 +581,20 @@ double RemovalEvaluator::largest_change() const {
 /// Sums the squared distances of the coarse faces' centroids and their new edges' midpoints to the star: the surface
 /// where nothing was, as over a notch that the carried points do not see.
 double RemovalEvaluator::bridge_sum(const Sector& sector, Triangles triangles) {
-  points_.clear();
+  bridge_.clear();
   for (const PolygonTriangle t : triangles) {
     const Vec3& a = position(sector, t.a);
     const Vec3& b = position(sector, t.b);
     const Vec3& c = position(sector, t.c);
-    points_.add((a + b + c) * (1.0 / 3) - center_);
+    bridge_.add((a + b + c) * (1.0 / 3) - center_);
     for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}})
       if (!is_rim(sector, from, to) && (from < to || (to == 0 && from + 1U == sector.size())))
-        points_.add((position(sector, from) + position(sector, to)) * 0.5 - center_);
+        bridge_.add((position(sector, from) + position(sector, to)) * 0.5 - center_);
   }
-  nearest_.assign(points_.size(), std::numeric_limits<float>::infinity());
-  distance_.resize(points_.padded_size());
+  nearest_.assign(bridge_.size(), std::numeric_limits<float>::infinity());
+  distance_.resize(bridge_.padded_size());
   for (std::size_t i = 0; i < sector.patch->face_count(); ++i) {
-    squared_distances(points_, {Vec3{}, position(sector, i) - center_, position(sector, i + 1) - center_},
+    squared_distances(bridge_, {Vec3{}, position(sector, i) - center_, position(sector, i + 1) - center_},
                       distance_.data());
     for (std::size_t p = 0; p < nearest_.size(); ++p) nearest_[p] = std::min(nearest_[p], distance_[p]);
   }
@@ -681,18 +627,9 @@ double RemovalEvaluator::line_cost(Index vertex) const {
 
 /// Compares the removed wedge's attributes with those of the nearest point of the sector's new faces.
 double RemovalEvaluator::squared_attribute_difference(const Sector& sector, Triangles triangles) const {
-  double least = std::numeric_limits<double>::infinity();
-  AttributeCost::Place place;
-  for (const PolygonTriangle t : triangles) {
-    const std::array<std::size_t, 3> corner{t.a, t.b, t.c};
-    const auto at = [&](std::size_t k) { return state_->mesh.positions[ring_vertex_[ring_number(sector, corner[k])]]; };
-    const Barycentric nearest = nearest_weights(center_, {at(0), at(1), at(2)});
-    if (nearest.squared_distance >= least) continue;
-    least = nearest.squared_distance;
-    place.weights = nearest.weights;
-    for (std::size_t k = 0; k < 3; ++k) place.wedges[k] = sector.patch->polygon[corner[k]];
-  }
-  return attributes_->squared_difference(sector.patch->center, place, sector.scale);
+  const auto position_at = [&](std::size_t k) { return state_->mesh.positions[ring_vertex_[ring_number(sector, k)]]; };
+  const auto wedge_at = [&](std::size_t k) { return sector.patch->polygon[k]; };
+  return attributes_->squared_difference(sector.patch->center, center_, triangles, position_at, wedge_at, sector.scale);
 }
 
 Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
@@ -709,8 +646,8 @@ Evaluation RemovalEvaluator::combine(const RemovalRecord& record) {
     if (!is_hybrid) continue;
     if (measures_distances()) {
       if (sectors_.size() > 1) gather_points(sector);
-      const double charged = added_squared_distance(sector, triangles);  // before its points are replaced
-      moved.squared_distance += joined_distance(charged, bridge_sum(sector, triangles));
+      moved.squared_distance +=
+          joined_distance(added_squared_distance(sector, triangles), bridge_sum(sector, triangles));
     }
     if (!attributes_->empty()) moved.squared_attributes += squared_attribute_difference(sector, triangles);
   }

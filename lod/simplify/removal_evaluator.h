@@ -20,14 +20,12 @@
 #include "simplify/removal_cost.h"
 #include "simplify/removal_rules.h"
 #include "simplify/simplify_state.h"
+#include "simplify/star_points.h"
 
 namespace lodestone::detail {
 
 /// Larger rings wait until their neighbours' removals have shrunk them.
 inline constexpr std::size_t kMaxRing = 250;
-
-/// Larger polygons are filled with fans alone; up to here the triangulation that sweeps the least volume is found, too.
-inline constexpr int kMaxSearchedPolygon = 16;
 
 /// Takes over a trial that is better than the best so far; where none is legal yet, why this one is not.
 bool take_better(Evaluation& best, const Evaluation& found);
@@ -73,11 +71,9 @@ class RemovalEvaluator {
     const SectorPatch* patch = nullptr;
     std::size_t ring_begin = 0;  // the ring number of polygon corner 0, and of the first face
     std::size_t target = 0;      // the ring number of a moved sector's last corner
-    Vec3 normal;                 // sum of its faces' normals
-    FaceRules::LeastShape least_shape;
-    bool has_directions = true;  // whether the normals of all its faces are more than rounding
-    Vec3 entry_normal;           // of the triangle chosen at the edge shared with the sector before
-    Vec3 exit_normal;            // and with the sector after; the same for an open sector
+    FaceRules::Replaced faces;
+    Vec3 entry_normal;  // of the triangle chosen at the edge shared with the sector before
+    Vec3 exit_normal;   // and with the sector after; the same for an open sector
     AttributeScale scale;
     std::size_t size() const { return patch->polygon.size(); }
     bool is_moved() const { return patch->shape == SectorShape::Moved; }
@@ -108,7 +104,6 @@ class RemovalEvaluator {
   void gather_ring();
   void gather_normals();
   bool gather_links(Index vertex);
-  bool has_face(std::size_t first, std::size_t second, std::size_t third) const;
   bool falls_onto_face(std::size_t target) const;
   bool copy_triangles(const RemovalRecord& filled, SectorPatch& patch);
   Index widest_copy(Index vertex);
@@ -139,7 +134,7 @@ class RemovalEvaluator {
   Triangle& triangle(const Sector& sector, PolygonTriangle t);
   Verdict judge(const Sector& sector, PolygonTriangle t, const Triangle& triangle) const;
   Verdict judge(const Sector& sector, Triangles triangles);
-  void gather_shapes(Sector& sector) const;
+  void gather_faces(Sector& sector) const;
   double squared_volume_sum(const Sector& sector, Triangles triangles);
   void measure_distances(const Sector& sector, PolygonTriangle t, Triangle& triangle);
   double added_squared_distance(const Sector& sector, Triangles triangles);
@@ -151,7 +146,6 @@ class RemovalEvaluator {
   double bridge_sum(const Sector& sector, Triangles triangles);
   double line_cost(Index vertex) const;
   double squared_attribute_difference(const Sector& sector, Triangles triangles) const;
-  bool turns_texture(const Sector& sector, PolygonTriangle t) const;
   Evaluation combine(const RemovalRecord& record);
 
   std::size_t ring_size() const { return ring_position_.size(); }
@@ -205,9 +199,8 @@ class RemovalEvaluator {
   std::vector<std::uint8_t> linked_;      // which ring vertices an edge joins, and in which sheets
   std::vector<Index> shared_ends_;        // sites, sorted: see gather_shared_ends
   std::vector<Index> ring_of_site_;       // by vertex, the first of its copies; kNoIndex outside the ring
-  PointBatch points_;                     // the sector's carried points
-  std::vector<float> weights_;            // of those points
-  double distance_before_ = 0;            // their squared distances to the star, weighted and summed
+  StarPoints points_;                     // of the sector
+  PointBatch bridge_;                     // points of new faces
   std::vector<float> nearest_;
   std::vector<float> distance_;
   std::vector<Triangle> table_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "simplify/removal_evaluator.h"
+#include "simplify/site_walk.h"
 
 namespace lodestone::detail {
 namespace {
@@ -164,7 +165,8 @@ bool RemovalEvaluator::falls_onto_face(std::size_t target) const {
   for (std::size_t i = 0; i < fine_corner_.size(); ++i) {
     const std::size_t j = (i + 1) % ring_size();
     if (i == target || j == target || !linked(i, target) || !linked(j, target)) continue;
-    if (has_face(target, i, j)) return true;
+    const Connectivity& mesh = state_->connectivity;
+    if (has_face(mesh, ring_vertex_[target], mesh.site(ring_vertex_[i]), mesh.site(ring_vertex_[j]))) return true;
   }
   return false;
 }

@@ -44,9 +44,12 @@ bool FaceRules::turns_too_far(const Vec3& to, const Vec3& from) const {
                         cosine * cosine < kMinCosine * kMinCosine * squared_length(to) * squared_length(from));
 }
 
-void FaceRules::LeastShape::add(double squared_normal, double squared_longest) {
-  if (squared_normal > kMinShape * kMinShape * squared_longest * squared_longest) return;
-  least_ = std::min(least_, (1 - kSameShape) * std::sqrt(squared_normal) / squared_longest);
+void FaceRules::add(const Vec3& normal, double squared_longest, Replaced& faces) const {
+  const double square = squared_length(normal);
+  if (!(square > kMinShape * kMinShape * squared_longest * squared_longest))
+    faces.least_shape = std::min(faces.least_shape, (1 - kSameShape) * std::sqrt(square) / squared_longest);
+  faces.have_directions = faces.have_directions && has_direction(square, squared_longest);
+  faces.normal += normal;
 }
 
 }  // namespace lodestone::detail

@@ -23,7 +23,6 @@ class FaceRules {
   /// From now on lets new faces turn further: at first up to a right angle; then, if `beyond`, by any angle, where a
   /// worse shape is better than too many faces. Returns whether there was further to go.
   bool relax_angles(bool beyond);
-  bool limits_turns() const { return turn_limit_ != TurnLimit::None; }
   /// Whether a face turns by more than the angle allowed, from one normal to another, both of any length.
   bool turns_too_far(const Vec3& to, const Vec3& from) const;
 
@@ -32,18 +31,26 @@ class FaceRules {
   bool has_direction(double squared_normal, double squared_longest) const {
     return squared_normal > least_height_squared_ * squared_longest;
   }
-  /// The height over the longest edge that a new face must exceed: what was a sliver may stay one, as long as it gets
-  /// no worse. Where the worst of the faces that go is one, that is the limit.
-  class LeastShape {
-   public:
-    void add(double squared_normal, double squared_longest);
-    bool is_met(double squared_normal, double squared_longest) const {
-      return squared_normal > least_ * least_ * squared_longest * squared_longest;
-    }
-
-   private:
-    double least_ = kMinShape;
+  /// What the faces that go ask of those that come. What was a sliver may stay one, as long as it gets no worse: where
+  /// the worst of the faces is one, that is the limit.
+  struct Replaced {
+    double least_shape = kMinShape;  ///< height over longest edge that a new face must exceed
+    bool have_directions = true;     ///< whether the normals of all are more than rounding
+    Vec3 normal;                     ///< sum of theirs
   };
+  /// Adds a face that goes.
+  void add(const Vec3& normal, double squared_longest, Replaced& faces) const;
+  /// Whether a new face would be too thin.
+  bool is_too_thin(double squared_normal, double squared_longest, const Replaced& faces) const {
+    const double least = faces.least_shape * squared_longest;
+    return !(squared_normal > least * least) ||
+           (faces.have_directions && !has_direction(squared_normal, squared_longest));
+  }
+  /// Whether a new face looks away from where all those did that go: what is asked where it lies beside none of them
+  /// that has a direction.
+  bool looks_away(const Vec3& normal, const Replaced& faces) const {
+    return turn_limit_ != TurnLimit::None && dot(normal, faces.normal) <= 0;
+  }
 
   /// Rounding takes points off planes and lines; that must not make a removal dearer than one next to it.
   float beyond_rounding(float squared_distance) const {

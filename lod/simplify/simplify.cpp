@@ -22,6 +22,7 @@
 #include "simplify/locks.h"
 #include "simplify/pieces.h"
 #include "simplify/record_builder.h"
+#include "simplify/site_walk.h"
 #include "simplify/spatial_order.h"
 
 namespace lodestone {
@@ -222,17 +223,7 @@ bool Simplifier::choose_candidates() {
 bool Simplifier::claim_ring(Index vertex) {
   const Connectivity& mesh = state_.connectivity;
   looked_at_.clear();
-  for (Index copy = vertex;;) {
-    const Index start = mesh.corner_at(copy);
-    for (Index corner = start; corner != kNoIndex;) {
-      looked_at_.push_back(mesh.site(mesh.vertex(next_corner(corner))));
-      const Index left = mesh.swing_left(corner);
-      if (left == kNoIndex) looked_at_.push_back(mesh.site(mesh.vertex(previous_corner(corner))));
-      corner = left == start ? kNoIndex : left;
-    }
-    copy = mesh.next_copy(copy);
-    if (copy == vertex) break;
-  }
+  for_each_neighbour(mesh, vertex, [&](Index, Index neighbour) { looked_at_.push_back(mesh.site(neighbour)); });
   looked_at_.push_back(vertex);
   for (const Index site : looked_at_)
     if (claimed_[site] == round_ + 1) return false;
