@@ -384,7 +384,7 @@ double looseness_at(const Tally& tally, double share) {
 
 TEST_CASE("no point of a level, and none of the full mesh, is farther from the other than the record's bound") {
   const char* const wanted = std::getenv("LODESTONE_BOUND_TRIALS");
-  const std::size_t count = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : kReduced ? 200 : 400;
+  const std::size_t count = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 400;
   Tally tally;
   for (std::uint64_t seed = 0; tally.trials < count; ++seed) try_mesh(seed, tally);
   REQUIRE(tally.looseness.size() > count / 2);
