@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -57,11 +58,13 @@ Result<void> check_lengths(const TriangleSoup& soup) {
       return fail(ErrorCode::InvalidArgument,
                   text("attribute ", attribute.name, " has ", attribute.data.size(), " bytes for ",
                        soup.positions.size(), " points of ", attribute.element_bytes()));
-  for (std::size_t i = 0; i < soup.indices.size(); ++i)
-    if (soup.indices[i] >= soup.positions.size())
-      return fail(ErrorCode::InvalidArgument,
-                  text("index ", i, " is ", soup.indices[i], ", beyond the ", soup.positions.size(), " points"));
-  return {};
+  Index largest = 0;
+  for (const Index index : soup.indices) largest = std::max(largest, index);
+  if (soup.indices.empty() || largest < soup.positions.size()) return {};
+  const auto beyond = std::find_if(soup.indices.begin(), soup.indices.end(),
+                                   [&](Index index) { return index >= soup.positions.size(); });
+  return fail(ErrorCode::InvalidArgument, text("index ", beyond - soup.indices.begin(), " is ", *beyond,
+                                               ", beyond the ", soup.positions.size(), " points"));
 }
 
 /// Maps each used point to the first used point at the same position.
@@ -84,15 +87,19 @@ std::uint64_t attribute_hash(const TriangleSoup& soup, Index point) {
   std::uint64_t hash = 0;
   for (const Attribute& attribute : soup.attributes) {
     const std::size_t bytes = attribute.element_bytes();
-    for (std::size_t i = 0; i < bytes; ++i)
-      hash = hash * 1099511628211ULL + std::to_integer<std::uint64_t>(attribute.data[point * bytes + i]);
+    for (std::size_t i = 0; i < bytes; i += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, &attribute.data[point * bytes + i], std::min(sizeof word, bytes - i));
+      hash = mix_bits(hash + word);
+    }
   }
-  return mix_bits(hash);
+  return hash;
 }
 
 /// Maps each used point to the first used point with the same position and attributes.
 std::vector<Index> weld_wedges(const TriangleSoup& soup, const std::vector<Index>& corners,
                                const std::vector<Index>& first_point) {
+  if (soup.attributes.empty()) return first_point;
   std::vector<Index> first_wedge(soup.positions.size(), kNoIndex);
   HashIndex table(soup.positions.size());
   for (const Index point : corners) {
@@ -128,6 +135,7 @@ struct CleanFaces {
 };
 
 CleanFaces drop_nonfinite(const TriangleSoup& soup, AssemblyReport& report) {
+  if (std::all_of(soup.positions.begin(), soup.positions.end(), is_finite)) return {soup.indices, soup.face_material};
   CleanFaces faces;
   faces.corners.reserve(soup.indices.size());
   for (std::size_t i = 0; i < soup.indices.size(); i += 3) {
@@ -142,9 +150,11 @@ CleanFaces drop_nonfinite(const TriangleSoup& soup, AssemblyReport& report) {
   return faces;
 }
 
-std::array<Index, 3> rotated_to_smallest(std::array<Index, 3> face) {
-  std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-  return face;
+std::array<Index, 3> rotated_to_smallest(const std::array<Index, 3>& face) {
+  const auto [a, b, c] = face;
+  const std::array<Index, 5> twice{a, b, c, a, b};
+  const std::size_t first = b < a ? (c < b ? 2 : 1) : (c < a ? 2 : 0);
+  return {twice[first], twice[first + 1], twice[first + 2]};
 }
 
 /// Keeps the faces for which `keep(f)` holds.
@@ -171,19 +181,60 @@ void drop_degenerate(CleanFaces& faces, const std::vector<Index>& first_point, A
   });
 }
 
+/// Numbers distinct faces in order of first appearance.
+class FaceIndex {
+ public:
+  /// Corners, the smallest first, and the material.
+  using Key = std::array<Index, 4>;
+
+  FaceIndex(std::size_t point_count, std::size_t face_count)
+      : newest_(point_count, kNoIndex), length_(point_count, 0), face_count_(face_count) {
+    faces_.reserve(face_count);
+    older_.reserve(face_count);
+  }
+
+  /// Returns whether the face is new.
+  bool add(const Key& key) {
+    for (Index face = newest_[key[0]]; face != kNoIndex; face = older_[face])
+      if (faces_[face] == key) return false;
+    const auto candidate = static_cast<Index>(faces_.size());
+    if (length_[key[0]] == kMostInList) return add_to_table(key);
+    ++length_[key[0]];
+    faces_.push_back(key);
+    older_.push_back(std::exchange(newest_[key[0]], candidate));
+    return true;
+  }
+
+ private:
+  static constexpr std::uint8_t kMostInList = 32;  // beyond, comparing them all costs too much
+
+  bool add_to_table(const Key& key) {
+    if (!table_) table_ = std::make_unique<HashIndex>(face_count_);
+    const std::uint64_t hash = mix_bits(mix_bits(mix_bits(mix_bits(key[0]) + key[1]) + key[2]) + key[3]);
+    const auto candidate = static_cast<Index>(faces_.size());
+    if (table_->find_or_insert(hash, candidate, [&](Index other) { return faces_[other] == key; }) != candidate)
+      return false;
+    faces_.push_back(key);
+    older_.push_back(kNoIndex);
+    return true;
+  }
+
+  // By smallest corner the first faces, in a list: points and faces that lie together in the mesh do so here, too.
+  std::vector<Index> newest_;
+  std::vector<std::uint8_t> length_;
+  std::vector<Key> faces_;
+  std::vector<Index> older_;
+  std::size_t face_count_;
+  std::unique_ptr<HashIndex> table_;  ///< of all others
+};
+
 /// A face that differs from another in any attribute, or in its material, is a sheet of its own on the same place.
 void drop_duplicates(CleanFaces& faces, const std::vector<Index>& first_same, AssemblyReport& report) {
-  std::vector<std::array<Index, 4>> seen;  // corners and material
-  HashIndex table(faces.corners.size() / 3);
+  FaceIndex seen(first_same.size(), faces.corners.size() / 3);
   filter_faces(faces, [&](Index f) {
     const Index* c = &faces.corners[3 * std::size_t{f}];
     const auto face = rotated_to_smallest({first_same[c[0]], first_same[c[1]], first_same[c[2]]});
-    const std::array<Index, 4> key{face[0], face[1], face[2], faces.material.empty() ? 0 : faces.material[f]};
-    const std::uint64_t hash = mix_bits(mix_bits(mix_bits(mix_bits(key[0]) + key[1]) + key[2]) + key[3]);
-    const auto candidate = static_cast<Index>(seen.size());
-    const bool is_new =
-        table.find_or_insert(hash, candidate, [&](Index other) { return seen[other] == key; }) == candidate;
-    if (is_new) seen.push_back(key);
+    const bool is_new = seen.add({face[0], face[1], face[2], faces.material.empty() ? 0 : faces.material[f]});
     report.duplicate_faces += is_new ? 0 : 1;
     return is_new;
   });
@@ -219,9 +270,9 @@ Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& 
   drop_duplicates(faces, weld_sheets(soup, faces.corners, first_wedge), report);
   result.mesh = number_by_first_use(soup, faces, first_point, first_wedge);
 
-  std::vector<bool> used(soup.positions.size(), false);
-  for (const Index point : soup.indices) used[point] = true;
-  report.unused_points = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
+  std::vector<std::uint8_t> used(soup.positions.size(), 0);
+  for (const Index point : soup.indices) used[point] = 1;
+  report.unused_points = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
   std::vector<HalfEdge> halves = sorted_edges(result.mesh);
   if (options.turn_faces) report.turned_faces = make_winding_coherent(result.mesh, halves);
   if (report.turned_faces > 0) halves = sorted_edges(result.mesh);

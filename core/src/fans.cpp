@@ -33,6 +33,7 @@ class SheetFinder {
   Index across(Index corner) const { return across_[corner]; }
   /// Whether several sheets lie at some edge of the vertex.
   bool is_layered(Index vertex) const { return layered_[vertex] != 0; }
+  bool any_layered() const { return any_layered_; }
   void cut(Index corner) { across_[std::exchange(across_[corner], kNoIndex)] = kNoIndex; }
 
  private:
@@ -67,7 +68,8 @@ class SheetFinder {
   const Mesh& mesh_;
   std::vector<Index> across_;          // by corner
   std::vector<std::uint8_t> layered_;  // by vertex
-  UnionFind sheets_;                   // of faces
+  bool any_layered_ = false;
+  UnionFind sheets_;  // of faces
   std::size_t nonmanifold_edges_ = 0;
 };
 
@@ -86,6 +88,8 @@ SheetFinder::SheetFinder(const Mesh& mesh, std::span<const HalfEdge> halves)
   std::erase_if(crowded, [&](Edge edge) { return !is_layered(edge); });
   for (const Edge edge : crowded)
     for (const Index c : {edge[0].corner, next_corner(edge[0].corner)}) layered_[mesh.corner_vertex(c)] = 1;
+  any_layered_ = !crowded.empty();
+  if (!any_layered_) return;
   cut_folds();
   join_layers(crowded);
 }
@@ -220,20 +224,29 @@ class FanSimplifier {
   Fan fan_;
 };
 
-void FanSimplifier::gather(Index corner) {
+/// Calls `visit(c)` for the corners of a fan, counter-clockwise, an open one from its first spoke on; returns whether
+/// it is closed.
+template <class Visit>
+bool for_each_in_fan(const SheetFinder& sheets, Index corner, const Visit& visit) {
   Index first = corner;
-  for (Index across = sheets_.across(first); across != kNoIndex; across = sheets_.across(first)) {
+  for (Index across = sheets.across(first); across != kNoIndex; across = sheets.across(first)) {
     first = next_corner(across);
     if (first == corner) break;
   }
-  fan_.corners.clear();
   Index c = first;
   do {
+    visit(c);
+    c = sheets.across(previous_corner(c));
+  } while (c != kNoIndex && c != first);
+  return c == first;
+}
+
+void FanSimplifier::gather(Index corner) {
+  fan_.corners.clear();
+  fan_.closed = for_each_in_fan(sheets_, corner, [&](Index c) {
     fan_.corners.push_back(c);
     seen_[c] = 1;
-    c = sheets_.across(previous_corner(c));
-  } while (c != kNoIndex && c != first);
-  fan_.closed = c == first;
+  });
 }
 
 /// An open fan may begin and end at one position: its ends meet there, or another sheet lies between.
@@ -278,46 +291,34 @@ void FanSimplifier::cut() {
   }
 }
 
-/// Groups the corners into fans; a fan is named by its first corner.
-UnionFind fans_of(const Mesh& mesh, const SheetFinder& sheets) {
-  UnionFind fans(mesh.corner_wedge.size());
-  for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {
-    const Index across = sheets.across(c);
-    if (across == kNoIndex || across < c) continue;
-    fans.join(c, next_corner(across));
-    fans.join(next_corner(c), across);
-  }
-  return fans;
-}
-
-/// Gives every fan a vertex, new ones where a vertex has several; returns it by the fan's first corner.
-std::vector<Index> number_fans(Mesh& mesh, UnionFind& fans, AssemblyReport& report) {
+/// Gives every fan a vertex, new ones where a vertex has several; returns it by corner.
+std::vector<Index> number_fans(Mesh& mesh, const SheetFinder& sheets, AssemblyReport& report) {
   const std::size_t vertex_count = mesh.vertex_count();
-  std::vector<Index> first_fan(vertex_count, kNoIndex);
+  std::vector<bool> has_fan(vertex_count, false), is_cut(vertex_count, false);
   std::vector<Index> fan_vertex(mesh.corner_wedge.size(), kNoIndex);
-  std::vector<bool> is_cut(vertex_count, false);
   for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {
+    if (fan_vertex[c] != kNoIndex) continue;
     const Index vertex = mesh.corner_vertex(c);
-    const Index fan = fans.find(c);
-    if (first_fan[vertex] == kNoIndex) first_fan[vertex] = fan;
-    if (fan_vertex[fan] != kNoIndex) continue;
-    fan_vertex[fan] = vertex;
-    if (first_fan[vertex] == fan) continue;
-    fan_vertex[fan] = static_cast<Index>(mesh.positions.size());
-    mesh.positions.push_back(mesh.positions[vertex]);
-    report.cut_vertices += is_cut[vertex] ? 0 : 1;
-    is_cut[vertex] = true;
+    Index number = vertex;
+    if (has_fan[vertex]) {
+      number = static_cast<Index>(mesh.positions.size());
+      mesh.positions.push_back(mesh.positions[vertex]);
+      report.cut_vertices += is_cut[vertex] ? 0 : 1;
+      is_cut[vertex] = true;
+    }
+    has_fan[vertex] = true;
+    for_each_in_fan(sheets, c, [&](Index corner) { fan_vertex[corner] = number; });
   }
   return fan_vertex;
 }
 
 /// Gives the new vertices copies of the wedges that their corners had.
-void copy_wedges(Mesh& mesh, UnionFind& fans, const std::vector<Index>& fan_vertex) {
+void copy_wedges(Mesh& mesh, const std::vector<Index>& fan_vertex) {
   std::vector<std::uint64_t> copies;  // (wedge, vertex) pairs that need a copy of the wedge, in order of first use
   HashIndex table(mesh.corner_wedge.size());
   const std::size_t wedge_count = mesh.wedge_count();
   for (Index c = 0; c < mesh.corner_wedge.size(); ++c) {
-    const Index vertex = fan_vertex[fans.find(c)];
+    const Index vertex = fan_vertex[c];
     const Index wedge = mesh.corner_wedge[c];
     if (mesh.wedge_vertex[wedge] == vertex) continue;
     const std::uint64_t pair = std::uint64_t{wedge} << 32 | vertex;
@@ -341,11 +342,10 @@ void copy_wedges(Mesh& mesh, UnionFind& fans, const std::vector<Index>& fan_vert
 
 void cut_into_fans(Mesh& mesh, std::span<const HalfEdge> halves, AssemblyReport& report) {
   SheetFinder sheets(mesh, halves);
-  FanSimplifier(mesh, sheets).run();
+  if (sheets.any_layered()) FanSimplifier(mesh, sheets).run();
   report.nonmanifold_edges = sheets.nonmanifold_edges();
-  UnionFind fans = fans_of(mesh, sheets);
-  const std::vector<Index> fan_vertex = number_fans(mesh, fans, report);
-  if (report.cut_vertices > 0) copy_wedges(mesh, fans, fan_vertex);
+  const std::vector<Index> fan_vertex = number_fans(mesh, sheets, report);
+  if (report.cut_vertices > 0) copy_wedges(mesh, fan_vertex);
 }
 
 }  // namespace lodestone::detail

@@ -35,14 +35,15 @@ using Edge = std::span<const HalfEdge>;
 /// corners.
 void sort_edges(std::vector<HalfEdge>& halves);
 
-/// Returns the halves of all edges of triangles, sorted as above: `vertex_of(corner)` names the ends. These may be
-/// vertices, sites or wedges.
+/// Returns the halves of all edges of triangles, sorted as above: `ends` has the number of what each corner stands at.
+std::vector<HalfEdge> sorted_edges(std::span<const Index> ends);
+
+/// The same, where `vertex_of(corner)` names the ends. These may be vertices, sites or wedges.
 template <class VertexOf>
 std::vector<HalfEdge> sorted_edges(std::size_t corner_count, const VertexOf& vertex_of) {
-  std::vector<HalfEdge> halves(corner_count);
-  for (Index c = 0; c < corner_count; ++c) halves[c] = HalfEdge(vertex_of(c), vertex_of(next_corner(c)), c);
-  sort_edges(halves);
-  return halves;
+  std::vector<Index> ends(corner_count);
+  for (Index c = 0; c < corner_count; ++c) ends[c] = vertex_of(c);
+  return sorted_edges(ends);
 }
 
 inline std::vector<HalfEdge> sorted_edges(const Mesh& mesh) {
