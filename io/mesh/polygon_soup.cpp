@@ -1,33 +1,101 @@
 #include "mesh/polygon_soup.h"
 
+#include <algorithm>
+#include <cstring>
+#include <span>
 #include <utility>
 
 #include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/bytes.h"
 #include "mesh/polygon_split.h"
 
 namespace lodestone::detail {
 namespace {
 
+constexpr std::size_t kMostCompared = 16;  // points of a vertex: one that has more is of no use to compare them all
+
+/// Makes points of corners: corners of one vertex share one where their attributes and their polygons' agree. That
+/// `assemble` would join them, too; but there are six times as many corners as vertices.
+class CornerJoiner {
+ public:
+  explicit CornerJoiner(const PolygonSoup& polygons)
+      : polygons_(polygons), newest_(polygons.positions.size(), kNoIndex) {
+    for (const auto* attributes : {&polygons.vertex_attributes, &polygons.corner_attributes})
+      for (const Attribute& a : *attributes)
+        if (a.name == "NORMAL") (attributes == &polygons.vertex_attributes ? vertex_normals_ : corner_normals_) = &a;
+  }
+
+  /// Returns a corner's point.
+  Index point_of(Index corner, Index polygon) {
+    Index& newest = newest_[polygons_.corners[corner]];
+    std::size_t compared = 0;
+    for (Index point = newest; point != kNoIndex && compared < kMostCompared; point = older_[point], ++compared)
+      if (agree(point, corner, polygon)) return point;
+    const auto point = static_cast<Index>(corners_.size());
+    corners_.push_back(corner);
+    faces_.push_back(polygon);
+    older_.push_back(newest);
+    if (may_be_shared(corner)) newest = point;
+    return point;
+  }
+
+  /// The first corner of each point, and its polygon.
+  const std::vector<Index>& corners() const { return corners_; }
+  const std::vector<Index>& polygons() const { return faces_; }
+
+ private:
+  static bool same_element(const Attribute& attribute, Index a, Index b) {
+    const std::size_t bytes = attribute.element_bytes();
+    return std::memcmp(&attribute.data[a * bytes], &attribute.data[b * bytes], bytes) == 0;
+  }
+
+  bool agree(Index point, Index corner, Index polygon) const {
+    const auto all_same = [](std::span<const Attribute> attributes, Index a, Index b) {
+      return std::all_of(attributes.begin(), attributes.end(),
+                         [&](const Attribute& attribute) { return same_element(attribute, a, b); });
+    };
+    return all_same(polygons_.corner_attributes, corners_[point], corner) &&
+           all_same(polygons_.face_attributes, faces_[point], polygon);
+  }
+
+  /// A normal without a direction gets that of its own face.
+  bool may_be_shared(Index corner) const {
+    const auto has = [](const Attribute* normals, Index element) {
+      return normals == nullptr || has_direction(Vec3(load<Vec3f>(normals->data, element * sizeof(Vec3f))));
+    };
+    return has(corner_normals_, corner) && has(vertex_normals_, polygons_.corners[corner]);
+  }
+
+  const PolygonSoup& polygons_;
+  const Attribute* vertex_normals_ = nullptr;
+  const Attribute* corner_normals_ = nullptr;
+  std::vector<Index> newest_;  ///< by vertex: its newest point that may be shared
+  std::vector<Index> older_;   ///< by point: the next of its vertex
+  std::vector<Index> corners_, faces_;
+};
+
 void append_picked(std::span<const Attribute> attributes, std::span<const Index> numbers, TriangleSoup& soup) {
   for (const Attribute& attribute : attributes) soup.attributes.push_back(pick_elements(attribute, numbers));
 }
 
-/// Makes a point of every corner of every triangle.
-TriangleSoup expanded(const PolygonSoup& polygons, const SplitPolygons& split) {
-  TriangleSoup soup;
-  const std::vector<Index> vertices = pick_entries(polygons.corners, split.corners);
-  std::vector<Index> faces;
-  faces.reserve(split.corners.size());
-  for (const Index polygon : split.polygon) faces.insert(faces.end(), 3, polygon);
+/// Makes points of corners with attributes.
+void add_points(const PolygonSoup& polygons, const SplitPolygons& split, TriangleSoup& soup) {
+  CornerJoiner joiner(polygons);
+  soup.indices.reserve(split.corners.size());
+  for (std::size_t i = 0; i < split.corners.size(); ++i)
+    soup.indices.push_back(joiner.point_of(split.corners[i], split.polygon[i / 3]));
+  const std::vector<Index> vertices = pick_entries(polygons.corners, joiner.corners());
   soup.positions = pick_entries(polygons.positions, vertices);
   append_picked(polygons.vertex_attributes, vertices, soup);
-  append_picked(polygons.corner_attributes, split.corners, soup);
-  append_picked(polygons.face_attributes, faces, soup);
-  for (std::size_t i = 0; i < soup.positions.size(); ++i) soup.indices.push_back(static_cast<Index>(i));
-  return soup;
+  append_picked(polygons.corner_attributes, joiner.corners(), soup);
+  append_picked(polygons.face_attributes, joiner.polygons(), soup);
+}
+
+bool all_are_triangles(const PolygonSoup& polygons) {
+  return std::all_of(polygons.sizes.begin(), polygons.sizes.end(), [](Index size) { return size == 3; });
 }
 
 void add_notes(const SplitPolygons& split, std::vector<std::string>& notes) {
@@ -43,17 +111,23 @@ Result<TriangleSoup> to_triangles(PolygonSoup polygons, std::vector<std::string>
   if (polygons.positions.size() >= kNoIndex || 3 * polygons.corners.size() >= kNoIndex)  // 3 a triangle, at most
     return fail(ErrorCode::LimitExceeded, text(polygons.positions.size(), " vertices and ", polygons.corners.size(),
                                                " corners are more than 32 bits can number"));
-  const SplitPolygons split = split_polygons(pick_entries(polygons.positions, polygons.corners), polygons.sizes);
-  add_notes(split, notes);
+  const bool points_are_vertices = polygons.corner_attributes.empty() && polygons.face_attributes.empty();
   TriangleSoup soup;
-  if (!polygons.corner_attributes.empty() || !polygons.face_attributes.empty()) {
-    soup = expanded(polygons, split);
+  if (points_are_vertices && all_are_triangles(polygons)) {
+    soup.indices = std::move(polygons.corners);
+    soup.face_material = std::move(polygons.face_material);
   } else {
-    soup.indices = pick_entries(polygons.corners, split.corners);
-    soup.positions = std::move(polygons.positions);
-    soup.attributes = std::move(polygons.vertex_attributes);
+    const SplitPolygons split = split_polygons(polygons.positions, polygons.corners, polygons.sizes);
+    add_notes(split, notes);
+    if (!polygons.face_material.empty()) soup.face_material = pick_entries(polygons.face_material, split.polygon);
+    if (points_are_vertices)
+      soup.indices = pick_entries(polygons.corners, split.corners);
+    else
+      add_points(polygons, split, soup);
   }
-  if (!polygons.face_material.empty()) soup.face_material = pick_entries(polygons.face_material, split.polygon);
+  if (!points_are_vertices) return soup;
+  soup.positions = std::move(polygons.positions);
+  soup.attributes = std::move(polygons.vertex_attributes);
   return soup;
 }
 

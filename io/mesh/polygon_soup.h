@@ -18,8 +18,8 @@ struct PolygonSoup {
   std::vector<Attribute> face_attributes;    ///< one element per polygon
 };
 
-/// Splits the polygons into triangles. Where corners or polygons have attributes, every corner of a triangle becomes a
-/// point of its own, for `assemble` to join. Appends a sentence to `notes` for what is left out or in doubt.
+/// Splits the polygons into triangles. Where corners or polygons have attributes, points are made of corners: those of
+/// one vertex that agree mostly share one. Appends a sentence to `notes` for what is left out or in doubt.
 /// Errors: LimitExceeded.
 Result<TriangleSoup> to_triangles(PolygonSoup polygons, std::vector<std::string>& notes);
 

@@ -169,27 +169,30 @@ class Triangulator {
 
 class Splitter {
  public:
-  explicit Splitter(SplitPolygons& out) : out_(out) {}
+  Splitter(std::span<const Vec3f> positions, SplitPolygons& out) : positions_(positions), out_(out) {}
 
-  void add(std::span<const Vec3f> polygon, Index first, Index number) {
-    if (polygon.size() < 3) {
+  /// Adds a polygon whose corners are numbered from `first` on.
+  void add(std::span<const Index> corners, Index first, Index number) {
+    if (corners.size() < 3) {
       ++out_.short_count;
       return;
     }
-    const auto triangles = polygon.size() == 3 ? std::nullopt : triangulate(polygon);
+    const auto triangles = corners.size() == 3 ? std::nullopt : triangulate(corners);
     if (triangles)
       for (const Index corner : *triangles) out_.corners.push_back(first + corner);
     else
-      for (Index i = 1; i + 1 < polygon.size(); ++i)
-        out_.corners.insert(out_.corners.end(), {first, first + i, first + i + 1});
+      for (Index i = 1; i + 1 < corners.size(); ++i)
+        for (const Index corner : {first, first + i, first + i + 1}) out_.corners.push_back(corner);
     out_.polygon.resize(out_.corners.size() / 3, number);
   }
 
  private:
   /// Returns nothing where a fan is right, or where there is nothing better.
-  std::optional<std::vector<Index>> triangulate(std::span<const Vec3f> polygon) {
-    if (!std::all_of(polygon.begin(), polygon.end(), is_finite)) return std::nullopt;
-    const auto points = project(polygon);
+  std::optional<std::vector<Index>> triangulate(std::span<const Index> corners) {
+    polygon_.clear();
+    for (const Index corner : corners) polygon_.push_back(positions_[corner]);
+    if (!std::all_of(polygon_.begin(), polygon_.end(), is_finite)) return std::nullopt;
+    const auto points = project(polygon_);
     if (!points || is_strictly_convex(*points)) return std::nullopt;
     const double cost = std::pow(static_cast<double>(points->size()), 3);
     auto triangles = cost > budget_ ? std::nullopt : triangulator_.run(*points);
@@ -198,21 +201,24 @@ class Splitter {
     return triangles;
   }
 
+  std::span<const Vec3f> positions_;
   SplitPolygons& out_;
+  std::vector<Vec3f> polygon_;
   Triangulator triangulator_;
   double budget_ = kBudget;
 };
 
 }  // namespace
 
-SplitPolygons split_polygons(std::span<const Vec3f> corner_position, std::span<const Index> sizes) {
+SplitPolygons split_polygons(std::span<const Vec3f> positions, std::span<const Index> corners,
+                             std::span<const Index> sizes) {
   SplitPolygons split;
-  split.corners.reserve(corner_position.size());
-  split.polygon.reserve(corner_position.size() / 3);
-  Splitter splitter(split);
+  split.corners.reserve(corners.size());
+  split.polygon.reserve(corners.size() / 3);
+  Splitter splitter(positions, split);
   Index first = 0;
   for (Index number = 0; number < sizes.size(); ++number) {
-    splitter.add(corner_position.subspan(first, sizes[number]), first, number);
+    splitter.add(corners.subspan(first, sizes[number]), first, number);
     first += sizes[number];
   }
   return split;

@@ -20,8 +20,9 @@ struct SplitPolygons {
 /// Splits polygons into triangles that cover them and nothing else, all of their corners kept.
 ///
 /// Convex ones become a fan around their first corner. The rest is triangulated by GEOS in the plane that the polygon
-/// is nearest to. Shapes: `corner_position` has an entry for each corner, `sizes` one for each polygon. Cost: linear in
+/// is nearest to. Shapes: `corners` has the position of each corner, `sizes` an entry for each polygon. Cost: linear in
 /// the corners, for outlines that are not convex up to cubic, within a budget for all together.
-SplitPolygons split_polygons(std::span<const Vec3f> corner_position, std::span<const Index> sizes);
+SplitPolygons split_polygons(std::span<const Vec3f> positions, std::span<const Index> corners,
+                             std::span<const Index> sizes);
 
 }  // namespace lodestone::detail

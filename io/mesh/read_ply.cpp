@@ -12,6 +12,7 @@
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/core/parallel.h>
 
 #include "base/bytes.h"
 #include "base/files_beside.h"
@@ -19,6 +20,7 @@
 #include "mesh/image_file.h"
 #include "mesh/polygon_soup.h"
 #include "mesh/soup_file.h"
+#include "mesh/text_pieces.h"
 #include "mesh/vertex_color.h"
 
 namespace lodestone::detail {
@@ -68,6 +70,8 @@ struct Header {
 };
 
 tl::unexpected<Error> broken(std::string message) { return fail(ErrorCode::Malformed, "ply: " + std::move(message)); }
+
+tl::unexpected<Error> too_many_corners() { return fail(ErrorCode::LimitExceeded, "ply: too many corners"); }
 
 Result<Scalar> scalar_named(std::string_view name) {
   for (const ScalarName& known : kScalarNames)
@@ -132,7 +136,9 @@ class Body {
  public:
   Body(Format format, std::string_view rest) : format_(format), rest_(rest) {}
 
+  Format format() const { return format_; }
   bool failed() const { return failed_; }
+  std::string_view rest() const { return rest_; }
   std::size_t bytes_left() const { return rest_.size(); }
 
   double number(Scalar type) { return format_ == Format::Ascii ? ascii_number(type) : binary_number(type); }
@@ -145,10 +151,16 @@ class Body {
     for (double left = number(*property.list_count); left > 0 && !failed_; --left) number(property.type);
   }
 
+  /// Leaves out what stands before a place in the rest.
+  void skip_to(const char* at) { rest_.remove_prefix(static_cast<std::size_t>(at - rest_.data())); }
+
   /// Returns what else stands on the line of an ASCII element that has been read; such files are not what they say.
   std::string_view rest_of_line() const {
     if (format_ != Format::Ascii) return {};
-    std::string_view line = rest_.substr(0, rest_.find_first_of("\r\n"));
+    std::size_t blanks = 0;
+    while (blanks < rest_.size() && is_blank(rest_[blanks]) && rest_[blanks] != '\r') ++blanks;
+    if (blanks == rest_.size() || rest_[blanks] == '\r' || rest_[blanks] == '\n') return {};
+    std::string_view line = rest_.substr(0, line_length(rest_));
     return next_token(line);
   }
 
@@ -168,18 +180,17 @@ class Body {
   }
 
   double ascii_number(Scalar type) {
-    constexpr std::string_view kBlanks = " \t\v\f\r\n";
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
-    const std::string_view token = rest_.substr(0, rest_.find_first_of(kBlanks));
-    rest_.remove_prefix(token.size());
-    if (type != Scalar::Float64) {
-      // Rounded once, to float; integers up to 32 bits do not fit one and go through double.
-      const auto value = type == Scalar::Float32 ? parse_float(token) : std::nullopt;
-      if (value) return *value;
-    }
-    double value = 0;
-    const auto result = std::from_chars(token.data(), token.data() + token.size(), value);
-    return result.ec == std::errc{} && result.ptr == token.data() + token.size() ? value : fail_now();
+    std::size_t blanks = 0;
+    while (blanks < rest_.size() && (is_blank(rest_[blanks]) || rest_[blanks] == '\n')) ++blanks;
+    rest_.remove_prefix(blanks);
+    std::size_t length = 0;
+    while (length < rest_.size() && !is_blank(rest_[length]) && rest_[length] != '\n') ++length;
+    const std::string_view token = rest_.substr(0, length);
+    rest_.remove_prefix(length);
+    if (type == Scalar::Float32)  // rounded once, to float
+      if (const auto value = parse_float(token)) return static_cast<double>(*value);
+    const auto value = parse_double(token);
+    return value ? *value : fail_now();
   }
 
   double binary_number(Scalar type) {
@@ -301,10 +312,165 @@ class Slots {
   std::array<double, kSlotCount + 1> values_{};
 };
 
+/// Reads an element's last line to its end.
+Result<void> check_end(const Body& body, const Element& element, std::size_t number) {
+  const std::string_view more = body.rest_of_line();
+  if (more.empty()) return {};
+  return broken(text("element ", element.name, ' ', number, ": '", more, "' stands behind the ",
+                     element.properties.size(), " properties that the header says"));
+}
+
+void read_single(Body& body, const Property& property, std::size_t number, Slots& slots) {
+  if (property.list_count)
+    body.skip(property);
+  else
+    slots.set(number, body.number(property.type));
+}
+
+/// Consecutive vertices.
+struct VertexRows {
+  std::vector<Vec3f> positions;
+  std::vector<float> normals, texcoords, colors;  ///< empty, or of every vertex
+
+  void append(VertexRows&& more) {
+    append_moved(positions, std::move(more.positions));
+    append_moved(normals, std::move(more.normals));
+    append_moved(texcoords, std::move(more.texcoords));
+    append_moved(colors, std::move(more.colors));
+  }
+};
+
+Result<VertexRows> read_vertex_rows(Body& body, const Element& element, std::size_t count) {
+  Slots v(element);
+  const bool with_normals = v.has({kNx, kNy, kNz}), with_texcoords = v.has({kU, kV});
+  const bool with_colors = v.has({kRed, kGreen, kBlue});
+  VertexRows rows;
+  for (std::size_t i = 0; i < count && !body.failed(); ++i) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p) read_single(body, element.properties[p], p, v);
+    rows.positions.push_back({v[kX], v[kY], v[kZ]});
+    if (with_normals)
+      for (const Slot slot : {kNx, kNy, kNz}) rows.normals.push_back(v[slot]);
+    if (with_texcoords)
+      for (const float value : {v[kU], 1 - v[kV]}) rows.texcoords.push_back(value);  // PLY's v points up.
+    if (with_colors) v.append_color(rows.colors);
+    LODESTONE_CHECK(check_end(body, element, i));
+  }
+  return rows;
+}
+
+/// Returns which property lists an element's vertices; the number of properties where none does.
+std::size_t corner_list(const Element& element) {
+  const auto found = std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
+    return p.list_count && (p.name == "vertex_indices" || p.name == "vertex_index");
+  });
+  return static_cast<std::size_t>(found - element.properties.begin());
+}
+
+bool is_texture(const Property& property) { return property.name == (property.list_count ? "texcoord" : "texnumber"); }
+
+/// Consecutive faces.
+struct FaceRows {
+  std::vector<Index> corners, sizes;
+  std::vector<double> textures;       ///< one per face: which of the textures
+  std::vector<float> texcoords;       ///< of the first corners
+  std::vector<float> colors;          ///< empty, or of every face
+  std::size_t without_texcoords = 0;  ///< corners
+
+  void append(FaceRows&& more) {
+    if (!more.texcoords.empty()) {
+      texcoords.resize(2 * corners.size());
+      append_moved(texcoords, std::move(more.texcoords));
+    }
+    append_moved(corners, std::move(more.corners));
+    append_moved(sizes, std::move(more.sizes));
+    append_moved(textures, std::move(more.textures));
+    append_moved(colors, std::move(more.colors));
+    without_texcoords += more.without_texcoords;
+  }
+};
+
+/// Reads faces, one after the other.
+class FaceReader {
+ public:
+  FaceReader(Body& body, const Element& element) : body_(body), element_(element), slots_(element) {}
+
+  Result<FaceRows> read(std::size_t count) {
+    const std::size_t corners = corner_list(element_);
+    const bool with_colors = slots_.has({kRed, kGreen, kBlue});
+    for (std::size_t i = 0; i < count && !body_.failed(); ++i) {
+      const std::size_t first = rows_.corners.size();
+      texcoords_of_face_.clear();
+      texture_of_face_ = 0;
+      for (std::size_t p = 0; p < element_.properties.size(); ++p) {
+        if (p == corners) {
+          LODESTONE_CHECK(read_polygon(i, element_.properties[p]));
+        } else {
+          read_property(element_.properties[p], p);
+        }
+      }
+      end_face(first);
+      if (with_colors) slots_.append_color(rows_.colors);
+      LODESTONE_CHECK(check_end(body_, element_, i));
+    }
+    return std::move(rows_);
+  }
+
+ private:
+  void read_property(const Property& property, std::size_t number) {
+    if (!is_texture(property))
+      read_single(body_, property, number, slots_);
+    else if (property.list_count)
+      read_list(property, texcoords_of_face_);
+    else
+      texture_of_face_ = body_.number(property.type);
+  }
+
+  void read_list(const Property& property, std::vector<float>& out) {
+    for (double left = body_.number(*property.list_count); left > 0 && !body_.failed(); --left)
+      out.push_back(static_cast<float>(body_.number(property.type)));
+  }
+
+  Result<void> read_polygon(std::size_t face, const Property& property) {
+    for (double left = body_.number(*property.list_count); left > 0 && !body_.failed(); --left) {
+      const double corner = body_.number(property.type);
+      if (!(corner >= 0 && corner < kNoIndex)) return broken(text("face ", face, ": vertex index ", corner));
+      rows_.corners.push_back(static_cast<Index>(corner));
+    }
+    if (rows_.corners.size() >= kNoIndex) return too_many_corners();
+    return {};
+  }
+
+  /// Ends the face whose corners begin with number `first`; corners before them without texture coordinates get 0, 0.
+  void end_face(std::size_t first) {
+    const std::size_t corner_count = rows_.corners.size() - first;
+    rows_.sizes.push_back(static_cast<Index>(corner_count));
+    rows_.textures.push_back(texture_of_face_);
+    if (texcoords_of_face_.size() < 2 * corner_count || corner_count == 0) {
+      rows_.without_texcoords += corner_count;
+      return;
+    }
+    rows_.texcoords.resize(2 * first);
+    for (std::size_t i = 0; i < corner_count; ++i)
+      for (const float value : {texcoords_of_face_[2 * i], 1 - texcoords_of_face_[2 * i + 1]})
+        rows_.texcoords.push_back(value);
+  }
+
+  Body& body_;
+  const Element& element_;
+  Slots slots_;
+  FaceRows rows_;
+  std::vector<float> texcoords_of_face_;  ///< of the face being read, as the next
+  double texture_of_face_ = 0;
+};
+
+Result<FaceRows> read_face_rows(Body& body, const Element& element, std::size_t count) {
+  return FaceReader(body, element).read(count);
+}
+
 class PlyReader {
  public:
-  PlyReader(const Header& header, Body body, const FileFetcher& fetch)
-      : header_(header), body_(body), images_(fetch, file_) {}
+  PlyReader(const Header& header, Body body, const FileFetcher& fetch, std::size_t piece_bytes)
+      : header_(header), body_(body), piece_bytes_(piece_bytes), images_(fetch, file_) {}
 
   Result<SoupFile> read() {
     for (const Element& element : header_.elements) {
@@ -317,6 +483,8 @@ class PlyReader {
     add_face_attributes();
     make_materials();
     if (!ignored_.empty()) file_.notes.push_back(text("properties that have no place are left out: ", ignored_));
+    polygons_.corners = std::move(faces_.corners);
+    polygons_.sizes = std::move(faces_.sizes);
     LODESTONE_TRY(file_.soup, to_triangles(std::move(polygons_), file_.notes));
     return std::move(file_);
   }
@@ -335,130 +503,76 @@ class PlyReader {
     if (element.name == "tristrips") return read_strips(element);
     for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
       for (const Property& property : element.properties) body_.skip(property);
-      LODESTONE_CHECK(check_end(element, i));
+      LODESTONE_CHECK(check_end(body_, element, i));
     }
     file_.notes.push_back(text(element.count, " elements '", element.name, "' are left out"));
     return {};
-  }
-
-  Result<void> check_end(const Element& element, std::size_t number) const {
-    const std::string_view more = body_.rest_of_line();
-    if (more.empty()) return {};
-    return broken(text("element ", element.name, ' ', number, ": '", more, "' stands behind the ",
-                       element.properties.size(), " properties that the header says"));
   }
 
   void ignore(const Element& element, const std::string& property) {
     ignored_ += text(ignored_.empty() ? "" : ", ", property, " of ", element.name);
   }
 
+  template <class Rows>
+  using RowReader = Result<Rows> (*)(Body& body, const Element& element, std::size_t count);
+
+  template <class Rows>
+  Result<Rows> read_rows(const Element& element, RowReader<Rows> read_some) {
+    if (body_.format() == Format::Ascii && body_.bytes_left() > piece_bytes_)
+      if (auto rows = read_side_by_side(element, read_some)) return std::move(*rows);
+    text_rows_.reset();
+    return read_some(body_, element, element.count);
+  }
+
+  /// Reads an element whose rows have a line each, as they should. Nothing where they do not, or where anything is
+  /// wrong: reading them one after the other then tells what.
+  template <class Rows>
+  std::optional<Rows> read_side_by_side(const Element& element, RowReader<Rows> read_some) {
+    if (!text_rows_) text_rows_.emplace(body_.rest(), piece_bytes_);
+    const auto texts = text_rows_->take(element.count);
+    if (!texts) return std::nullopt;
+    std::vector<std::optional<Rows>> pieces(texts->size());
+    std::vector<const char*> ends(texts->size());
+    for_each_in_parallel(texts->size(), [&](std::size_t i) {
+      Body body(Format::Ascii, (*texts)[i].text);
+      if (auto rows = read_some(body, element, (*texts)[i].count); rows && !body.failed()) pieces[i] = std::move(*rows);
+      ends[i] = body.rest().data();
+    });
+    Rows all;
+    for (std::optional<Rows>& piece : pieces) {
+      if (!piece) return std::nullopt;
+      all.append(std::move(*piece));
+    }
+    if (!ends.empty()) body_.skip_to(ends.back());
+    return all;
+  }
+
   Result<void> read_vertices(const Element& element) {
-    Slots v(element);
+    const Slots v(element);
     if (!v.has({kX, kY, kZ})) return broken("vertices have no x, y and z");
     if (element.count >= kNoIndex) return fail(ErrorCode::LimitExceeded, text("ply: ", element.count, " vertices"));
-    const bool with_normals = v.has({kNx, kNy, kNz}), with_texcoords = v.has({kU, kV});
-    const bool with_colors = v.has({kRed, kGreen, kBlue});
-
-    std::vector<float> normals, texcoords, colors;
-    for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
-      for (std::size_t p = 0; p < element.properties.size(); ++p) read_single(element.properties[p], p, v);
-      polygons_.positions.push_back({v[kX], v[kY], v[kZ]});
-      if (with_normals) normals.insert(normals.end(), {v[kNx], v[kNy], v[kNz]});
-      if (with_texcoords) texcoords.insert(texcoords.end(), {v[kU], 1 - v[kV]});  // PLY's v points up.
-      if (with_colors) v.append_color(colors);
-      LODESTONE_CHECK(check_end(element, i));
-    }
+    LODESTONE_TRY(VertexRows rows, read_rows<VertexRows>(element, read_vertex_rows));
     for (std::size_t p = 0; p < element.properties.size(); ++p)
       if (!v.known(p)) ignore(element, element.properties[p].name);
+    append_moved(polygons_.positions, std::move(rows.positions));
     auto& attributes = polygons_.vertex_attributes;
-    if (with_normals) attributes.push_back(float_attribute("NORMAL", 3, normals));
-    if (with_texcoords) attributes.push_back(float_attribute("TEXCOORD_0", 2, texcoords));
-    if (with_colors) attributes.push_back(v.make_colors(std::move(colors)));
+    if (v.has({kNx, kNy, kNz})) attributes.push_back(float_attribute("NORMAL", 3, rows.normals));
+    if (v.has({kU, kV})) attributes.push_back(float_attribute("TEXCOORD_0", 2, rows.texcoords));
+    if (v.has({kRed, kGreen, kBlue})) attributes.push_back(v.make_colors(std::move(rows.colors)));
     return {};
-  }
-
-  void read_single(const Property& property, std::size_t number, Slots& slots) {
-    if (property.list_count)
-      body_.skip(property);
-    else
-      slots.set(number, body_.number(property.type));
-  }
-
-  /// Returns which property lists an element's vertices; the number of properties where none does.
-  static std::size_t corner_list(const Element& element) {
-    const auto found = std::find_if(element.properties.begin(), element.properties.end(), [](const Property& p) {
-      return p.list_count && (p.name == "vertex_indices" || p.name == "vertex_index");
-    });
-    return static_cast<std::size_t>(found - element.properties.begin());
   }
 
   Result<void> read_faces(const Element& element) {
-    Slots f(element);
+    const Slots f(element);
+    LODESTONE_TRY(FaceRows rows, read_rows<FaceRows>(element, read_face_rows));
+    if (f.has({kRed, kGreen, kBlue})) face_colors_ = f.make_colors(std::move(rows.colors));
+    faces_.append(std::move(rows));
+    if (faces_.corners.size() >= kNoIndex) return too_many_corners();
     const std::size_t corners = corner_list(element);
-    const bool with_colors = f.has({kRed, kGreen, kBlue});
-    std::vector<float> colors;
-    for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
-      const std::size_t first = polygons_.corners.size();
-      texcoords_of_face_.clear();
-      texture_of_face_ = 0;
-      for (std::size_t p = 0; p < element.properties.size(); ++p) {
-        if (p == corners) {
-          LODESTONE_CHECK(read_polygon(i, element.properties[p]));
-        } else {
-          read_face_property(element.properties[p], p, f);
-        }
-      }
-      add_polygon(first);
-      if (with_colors) f.append_color(colors);
-      LODESTONE_CHECK(check_end(element, i));
-    }
     for (std::size_t p = 0; p < element.properties.size(); ++p)
       if (p != corners && !f.is_color(p) && !is_texture(element.properties[p]))
         ignore(element, element.properties[p].name);
-    if (with_colors) face_colors_ = f.make_colors(std::move(colors));
     return {};
-  }
-
-  static bool is_texture(const Property& property) {
-    return property.name == (property.list_count ? "texcoord" : "texnumber");
-  }
-
-  void read_face_property(const Property& property, std::size_t number, Slots& slots) {
-    if (!is_texture(property))
-      read_single(property, number, slots);
-    else if (property.list_count)
-      read_list(property, texcoords_of_face_);
-    else
-      texture_of_face_ = body_.number(property.type);
-  }
-
-  void read_list(const Property& property, std::vector<float>& out) {
-    for (double left = body_.number(*property.list_count); left > 0 && !body_.failed(); --left)
-      out.push_back(static_cast<float>(body_.number(property.type)));
-  }
-
-  Result<void> read_polygon(std::size_t face, const Property& property) {
-    for (double left = body_.number(*property.list_count); left > 0 && !body_.failed(); --left) {
-      const double corner = body_.number(property.type);
-      if (!(corner >= 0 && corner < kNoIndex)) return broken(text("face ", face, ": vertex index ", corner));
-      polygons_.corners.push_back(static_cast<Index>(corner));
-    }
-    if (polygons_.corners.size() >= kNoIndex) return fail(ErrorCode::LimitExceeded, "ply: too many corners");
-    return {};
-  }
-
-  /// Ends the face whose corners begin with number `first`; corners before them without texture coordinates get 0, 0.
-  void add_polygon(std::size_t first) {
-    const std::size_t corner_count = polygons_.corners.size() - first;
-    polygons_.sizes.push_back(static_cast<Index>(corner_count));
-    face_texture_.push_back(texture_of_face_);
-    if (texcoords_of_face_.size() < 2 * corner_count || corner_count == 0) {
-      corners_without_texcoords_ += corner_count;
-      return;
-    }
-    corner_texcoords_.resize(2 * first);
-    for (std::size_t i = 0; i < corner_count; ++i)
-      corner_texcoords_.insert(corner_texcoords_.end(), {texcoords_of_face_[2 * i], 1 - texcoords_of_face_[2 * i + 1]});
   }
 
   /// Lists of vertices of which every three in a row are a triangle, each turned the other way; −1 begins anew.
@@ -472,7 +586,7 @@ class PlyReader {
           body_.skip(element.properties[p]);
         }
       }
-      LODESTONE_CHECK(check_end(element, i));
+      LODESTONE_CHECK(check_end(body_, element, i));
     }
     return {};
   }
@@ -492,20 +606,20 @@ class PlyReader {
       last = {last[1], index};
       ++length;
     }
-    if (polygons_.corners.size() >= kNoIndex) return fail(ErrorCode::LimitExceeded, "ply: too many corners");
+    if (faces_.corners.size() >= kNoIndex) return too_many_corners();
     return {};
   }
 
   void add_triangle(const std::array<Index, 2>& last, Index index, std::size_t length) {
     const bool turned = length % 2 != 0;
-    polygons_.corners.insert(polygons_.corners.end(), {last[turned], last[!turned], index});
-    polygons_.sizes.push_back(3);
-    face_texture_.push_back(0);
-    corners_without_texcoords_ += 3;
+    faces_.corners.insert(faces_.corners.end(), {last[turned], last[!turned], index});
+    faces_.sizes.push_back(3);
+    faces_.textures.push_back(0);
+    faces_.without_texcoords += 3;
   }
 
   Result<void> check_indices() const {
-    for (const Index index : polygons_.corners)
+    for (const Index index : faces_.corners)
       if (index >= polygons_.positions.size())
         return broken(text("vertex index ", index, " is out of range: there are ", polygons_.positions.size()));
     return {};
@@ -517,18 +631,17 @@ class PlyReader {
 
   /// What corners say of texture coordinates is finer than what vertices do, their colours finer than those of faces.
   void add_face_attributes() {
-    if (!corner_texcoords_.empty()) {
+    if (!faces_.texcoords.empty()) {
       std::erase_if(polygons_.vertex_attributes, [](const Attribute& a) { return a.name == "TEXCOORD_0"; });
-      corner_texcoords_.resize(2 * polygons_.corners.size());
-      polygons_.corner_attributes.push_back(float_attribute("TEXCOORD_0", 2, corner_texcoords_));
-      if (corners_without_texcoords_ > 0)
-        file_.notes.push_back(text(corners_without_texcoords_, " corners without texture coordinates got 0, 0"));
+      faces_.texcoords.resize(2 * faces_.corners.size());
+      polygons_.corner_attributes.push_back(float_attribute("TEXCOORD_0", 2, faces_.texcoords));
+      if (faces_.without_texcoords > 0)
+        file_.notes.push_back(text(faces_.without_texcoords, " corners without texture coordinates got 0, 0"));
     }
     if (!face_colors_) return;
     if (has_colors(polygons_.vertex_attributes))
       file_.notes.push_back("the colours of faces are left out, since vertices have colours, too");
-    else if (face_colors_->data.size() ==
-             polygons_.sizes.size() * face_colors_->element_bytes())  // no strips among them
+    else if (face_colors_->data.size() == faces_.sizes.size() * face_colors_->element_bytes())  // no strips among them
       polygons_.face_attributes.push_back(std::move(*face_colors_));
   }
 
@@ -542,7 +655,7 @@ class PlyReader {
         material.base_color_texture = Texture{*image, {1, 1}, {0, 0}, false};
       file_.materials.push_back(std::move(material));
     }
-    for (const double texture : face_texture_) {
+    for (const double texture : faces_.textures) {
       const bool known = texture >= 0 && texture < static_cast<double>(header_.textures.size());
       polygons_.face_material.push_back(known ? static_cast<Index>(texture) + 1 : 0);
     }
@@ -550,24 +663,22 @@ class PlyReader {
 
   const Header& header_;
   Body body_;
+  std::size_t piece_bytes_;
+  std::optional<TextRows> text_rows_;  ///< of the body, from where it stands
   SoupFile file_;
   ImageLoader images_;
   PolygonSoup polygons_;
-  std::vector<double> face_texture_;      ///< one per polygon: which of the textures
-  std::vector<float> corner_texcoords_;   ///< of the first corners
+  FaceRows faces_;                        ///< and strips
   std::optional<Attribute> face_colors_;  ///< one element per element 'face'
-  std::vector<float> texcoords_of_face_;  ///< of the face being read, as the next
-  double texture_of_face_ = 0;
-  std::size_t corners_without_texcoords_ = 0;
   std::string ignored_;
 };
 
 }  // namespace
 
-Result<SoupFile> read_ply(std::span<const std::byte> bytes, const FileFetcher& fetch) {
+Result<SoupFile> read_ply(std::span<const std::byte> bytes, const FileFetcher& fetch, std::size_t piece_bytes) {
   std::string_view rest = without_byte_order_mark(as_text(bytes));
   LODESTONE_TRY(const Header header, parse_header(rest));
-  return PlyReader(header, Body(header.format, rest), fetch).read();
+  return PlyReader(header, Body(header.format, rest), fetch, piece_bytes).read();
 }
 
 }  // namespace lodestone::detail

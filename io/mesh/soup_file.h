@@ -10,6 +10,7 @@
 #include <lodestone/io/material.h>
 
 #include "base/files_beside.h"
+#include "mesh/text_pieces.h"
 
 namespace lodestone::detail {
 
@@ -21,9 +22,12 @@ struct SoupFile {
   std::vector<std::string> notes;
 };
 
-Result<SoupFile> read_obj(std::span<const std::byte> bytes, const FileFetcher& fetch);
+/// Texts are read in pieces of about so many bytes, side by side. Pre: piece_bytes > 0.
+Result<SoupFile> read_obj(std::span<const std::byte> bytes, const FileFetcher& fetch,
+                          std::size_t piece_bytes = kPieceBytes);
 Result<SoupFile> read_off(std::span<const std::byte> bytes);
-Result<SoupFile> read_ply(std::span<const std::byte> bytes, const FileFetcher& fetch);
+Result<SoupFile> read_ply(std::span<const std::byte> bytes, const FileFetcher& fetch,
+                          std::size_t piece_bytes = kPieceBytes);
 Result<SoupFile> read_stl(std::span<const std::byte> bytes);
 /// Reads any other format Assimp knows; `extension` is without the dot.
 Result<SoupFile> read_with_assimp(std::span<const std::byte> bytes, const std::string& extension,

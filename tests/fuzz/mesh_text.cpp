@@ -1,11 +1,33 @@
-// The readers of OBJ, STL, PLY and OFF.
+// The readers of OBJ, STL, PLY and OFF. Those that read in pieces say the same of small ones as of the whole.
 
 #include <cstdlib>
 #include <string>
 
 #include <lodestone/io/read_mesh.h>
 
+#include "base/files_beside.h"
+#include "mesh/soup_file.h"
 #include "support/fuzz.h"
+
+namespace {
+
+using lodestone::Result;
+using lodestone::detail::SoupFile;
+
+bool same(const Result<SoupFile>& a, const Result<SoupFile>& b) {
+  if (!a || !b) return !a && !b && a.error().message == b.error().message;
+  return a->soup.indices == b->soup.indices && a->soup.face_material == b->soup.face_material &&
+         a->soup.positions.size() == b->soup.positions.size() && a->notes == b->notes;
+}
+
+template <class Reader>
+void check_pieces(std::span<const std::byte> bytes, const Reader& read) {
+  constexpr std::size_t kWhole = std::size_t{1} << 40, kSmall = 16;
+  const auto nothing = lodestone::detail::nothing_beside;
+  if (!same(read(bytes, nothing, kWhole), read(bytes, nothing, kSmall))) std::abort();
+}
+
+}  // namespace
 
 std::vector<lodestone::test::Bytes> lodestone::test::fuzz_seeds() {
   std::vector<Bytes> seeds;
@@ -39,5 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto file = lodestone::read_mesh_bytes(bytes, extension);
     if (!file && file.error().message.empty()) std::abort();
   }
+  check_pieces(bytes, lodestone::detail::read_obj);
+  check_pieces(bytes, lodestone::detail::read_ply);
   return 0;
 }
