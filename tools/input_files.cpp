@@ -1,7 +1,11 @@
 #include "input_files.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -36,6 +40,23 @@ Result<std::vector<std::byte>> read_bytes(const std::filesystem::path& path) {
   return is_standard_stream(path) ? read_standard_input() : read_file(path);
 }
 
+/// Returns a file's first bytes; none of one that cannot be read.
+std::vector<std::byte> read_start(const std::filesystem::path& path) {
+  std::vector<std::byte> bytes(kLookedAt);
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return bytes;
+}
+
+/// Returns the bytes of a file, of a glTF with those of the files beside it.
+std::uint64_t bytes_of(const std::filesystem::path& path, bool gltf) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  const std::uint64_t alone = error ? 0 : size;
+  return gltf ? loaded_bytes(path).value_or(alone) : alone;
+}
+
 /// Opens a file whose bytes have been read.
 Result<Asset> open_asset(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   return is_standard_stream(path) ? Asset::read_bytes(bytes) : Asset::read(path);
@@ -67,7 +88,12 @@ Result<MeshFile> read_mesh_file(const std::filesystem::path& path) {
 
 Result<AssetOrScene> read_asset_or_scene(const std::filesystem::path& path) {
   const bool is_stream = is_standard_stream(path);
-  LODESTONE_TRY(const std::vector<std::byte> bytes, read_bytes(path));
+  std::vector<std::byte> bytes;  // all of standard input, of a file what tells its kind
+  if (is_stream) {
+    LODESTONE_TRY(bytes, read_standard_input());
+  } else {
+    bytes = read_start(path);
+  }
   AssetOrScene file;
   if (may_be_gltf(bytes)) {
     auto asset = open_asset(path, bytes).and_then(decode_asset);
@@ -84,7 +110,7 @@ Result<AssetOrScene> read_asset_or_scene(const std::filesystem::path& path) {
   }
   if (!scene) return tl::unexpected(scene.error());
   file.scene = std::move(*scene);
-  file.bytes = is_stream ? bytes.size() : loaded_bytes(path).value_or(bytes.size());
+  file.bytes = is_stream ? bytes.size() : bytes_of(path, may_be_gltf(bytes));
   return file;
 }
 

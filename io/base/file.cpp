@@ -115,7 +115,7 @@ Result<std::vector<std::byte>> read_file(const std::filesystem::path& path) {
   if (S_ISREG(status.st_mode)) bytes.reserve(static_cast<std::size_t>(status.st_size) + 1);
   for (;;) {  // Until the end, not for st_size bytes: pipes have no size, and files grow.
     const std::size_t used = bytes.size();
-    bytes.resize(std::max(bytes.capacity(), used + kBlockBytes));
+    bytes.resize(used < bytes.capacity() ? bytes.capacity() : used + kBlockBytes);
     const ssize_t count = ::read(file.get(), bytes.data() + used, bytes.size() - used);
     const int error = errno;
     bytes.resize(used + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
