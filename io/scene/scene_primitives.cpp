@@ -9,8 +9,6 @@
 #include <lodestone/core/detail/try.h>
 
 #include "base/bytes.h"
-#include "gltf/draco_check.h"
-#include "gltf/draco_decode.h"
 #include "gltf/gltf_attribute.h"
 #include "gltf/gltf_mesh_writer.h"
 #include "scene/scene_buffers.h"
@@ -66,17 +64,18 @@ Result<Mesh> joined(const TriangleSoup& soup) {
 /// Adds the accessors of a level's primitives, one primitive or one level at a time.
 class GeometryWriter {
  public:
-  GeometryWriter(GlbBuilder& builder, const MeshSource& source, const LevelGeometry& level,
-                 const QuantizationGrids& grids, const AssetOptions& options, WrittenLevel& written)
-      : builder_(builder), source_(source), level_(level), grids_(grids), options_(options), written_(written) {}
+  GeometryWriter(GlbBuilder& builder, const MeshSource& source, const LevelGeometry& level, const AssetOptions& options,
+                 WrittenLevel& written)
+      : builder_(builder), source_(source), level_(level), options_(options), written_(written) {}
 
-  std::map<Index, PrimitiveGeometry> write() {
-    const std::vector<FacesOfMaterial> groups = split_by_material(*level_.mesh);
+  std::map<Index, PrimitiveGeometry> write(const EncodedLevel& encoded) {
     std::map<Index, PrimitiveGeometry> geometry;
-    if (!options_.draco && share_vertices(groups)) return write_shared();
-    for (const FacesOfMaterial& group : groups) {
+    if (!options_.draco && share_vertices(encoded.groups)) return write_shared();
+    for (std::size_t i = 0; i < encoded.groups.size(); ++i) {
+      const FacesOfMaterial& group = encoded.groups[i];
       const SourcePrimitive& primitive = source_.primitives[group.material];
-      geometry[group.material] = options_.draco ? write_draco(primitive, group) : write_plain(primitive, group);
+      geometry[group.material] =
+          options_.draco ? write_draco(primitive, group, encoded.outputs[i]) : write_plain(primitive, group);
     }
     return geometry;
   }
@@ -149,67 +148,11 @@ class GeometryWriter {
     return targets;
   }
 
-  /// What of a primitive goes into Draco data, and what to ask of it to get it back.
-  struct DracoInput {
-    Mesh mesh;
-    QuantizationGrids grids;
-    std::vector<DracoRequest> requests;  ///< positions first
-  };
-
-  DracoInput draco_input(const SourcePrimitive& primitive, const Mesh& mesh) const {
-    DracoInput input{mesh, {grids_.position, {}}, {{0, ComponentType::Float32, 3, false}}};
-    input.mesh.attributes.clear();
-    for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
-      if (source_.columns[primitive.columns[i]].target) continue;
-      const Attribute& a = mesh.attributes[i];
-      input.mesh.attributes.push_back(a);
-      input.grids.attributes.push_back(grids_.attributes[primitive.columns[i]]);
-      input.requests.push_back({0, a.type, a.component_count, a.normalized});
-    }
-    return input;
-  }
-
-  /// Draco data, and what it decodes to.
-  struct DracoOutput {
-    DracoPrimitive encoded;
-    DracoGeometry decoded;
-  };
-
-  Result<DracoOutput> encode(const DracoInput& input, const DracoCoding& coding) const {
-    DracoOutput output;
-    LODESTONE_TRY(output.encoded, encode_draco(input.mesh, input.grids, coding, options_.draco_compression_level));
-    std::vector<DracoRequest> requests = input.requests;
-    requests[0].unique_id = output.encoded.position_id;
-    for (std::size_t i = 1; i < requests.size(); ++i) requests[i].unique_id = output.encoded.attribute_ids[i - 1];
-    LODESTONE_TRY(output.decoded, decode_draco(output.encoded.bytes, requests, "encoded level"));
-    LODESTONE_CHECK(check_decoded(output.decoded, input.mesh, input.grids));
-    return output;
-  }
-
-  /// Targets must be in the order of the decoded points. A decoder that reorders them leaves only the plain form.
-  Result<DracoOutput> encode_in_order(const DracoInput& input) const {
-    LODESTONE_TRY(DracoOutput output, encode(input, {DracoMethod::Sequential, DracoPrediction::Neighbours}));
-    if (output.decoded.indices == input.mesh.corner_wedge) return output;
-    return fail(ErrorCode::Unsupported, "Draco: the points are decoded in another order");
-  }
-
-  /// Tries one way after the other; returns the last one's error where all fail.
-  Result<DracoOutput> encode_smallest(const DracoInput& input) const {
-    constexpr DracoCoding kCodings[] = {{DracoMethod::Edgebreaker, DracoPrediction::Positions},
-                                        {DracoMethod::Edgebreaker, DracoPrediction::Neighbours},
-                                        {DracoMethod::Sequential, DracoPrediction::Neighbours}};
-    Result<DracoOutput> output;
-    for (const DracoCoding& coding : kCodings)
-      if (output = encode(input, coding); output) break;
-    return output;
-  }
-
   /// Accessors describe what the encoded bytes decode to, which Draco decides: it may split points, and it moves them.
-  PrimitiveGeometry write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
-    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive));
-    const DracoInput input = draco_input(primitive, mesh);
-    const auto output = primitive.target_count > 0 ? encode_in_order(input) : encode_smallest(input);
+  PrimitiveGeometry write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group,
+                                const Result<DracoOutput>& output) {
     if (!output) return write_uncompressed(primitive, group, output.error().message);
+    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive));
     PrimitiveGeometry geometry = describe_draco(primitive, output->encoded, output->decoded);
     geometry.targets = write_targets(primitive, mesh);
     if (options_.keep_decoded) note_decoded(primitive, group.material, decoded_mesh(primitive, output->decoded, mesh));
@@ -278,7 +221,6 @@ class GeometryWriter {
   GlbBuilder& builder_;
   const MeshSource& source_;
   const LevelGeometry& level_;
-  const QuantizationGrids& grids_;
   const AssetOptions& options_;
   WrittenLevel& written_;
   TriangleSoup decoded_;  // only with options_.keep_decoded and Draco
@@ -336,12 +278,11 @@ std::vector<const Attribute*> attributes_of(const LevelGeometry& level, const So
 }
 
 Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, const MeshSource& source,
-                                 const LevelGeometry& level, const QuantizationGrids& grids,
-                                 const AssetOptions& options) {
+                                 const LevelGeometry& level, const EncodedLevel& encoded, const AssetOptions& options) {
   WrittenLevel written;
   const std::uint64_t begin = (builder.binary_bytes() + 3) / 4 * 4;
-  GeometryWriter writer(builder, source, level, grids, options, written);
-  const std::map<Index, PrimitiveGeometry> geometry = writer.write();
+  GeometryWriter writer(builder, source, level, options, written);
+  const std::map<Index, PrimitiveGeometry> geometry = writer.write(encoded);
   if (options.keep_decoded) {
     LODESTONE_TRY(written.decoded, writer.decoded());
   }

@@ -10,8 +10,10 @@
 #include <lodestone/core/result.h>
 #include <lodestone/io/asset.h>
 
+#include "gltf/draco_decode.h"
 #include "gltf/draco_encode.h"
 #include "gltf/glb_builder.h"
+#include "gltf/gltf_mesh_writer.h"
 #include "scene/scene_impl.h"
 
 namespace lodestone::detail {
@@ -42,10 +44,21 @@ struct WrittenLevel {
   std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each
 };
 
+/// Draco data, and what it decodes to.
+struct DracoOutput {
+  DracoPrimitive encoded;
+  DracoGeometry decoded;
+};
+
+/// A level's faces by material, as they are written.
+struct EncodedLevel {
+  std::vector<FacesOfMaterial> groups;
+  std::vector<Result<DracoOutput>> outputs;  ///< one for each; empty without Draco
+};
+
 /// Writes a level's geometry and describes it by `source_mesh`, the mesh's object in the document: primitives keep
 /// their material, extensions and extras, those that are not replaced all they have.
 Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, const MeshSource& source,
-                                 const LevelGeometry& level, const QuantizationGrids& grids,
-                                 const AssetOptions& options);
+                                 const LevelGeometry& level, const EncodedLevel& encoded, const AssetOptions& options);
 
 }  // namespace lodestone::detail

@@ -14,6 +14,7 @@
 #include <lodestone/io/screen_coverage.h>
 
 #include "gltf/glb_builder.h"
+#include "scene/draco_levels.h"
 #include "scene/scene_buffers.h"
 #include "scene/scene_channels.h"
 #include "scene/scene_extensions.h"
@@ -169,6 +170,7 @@ class SceneWriter {
       }
     }
     LODESTONE_TRY(grids_, fit_grids(scene_, geometry_, options_));
+    encode_levels_side_by_side();
     for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh) {
       const QuantizationGrid& grid = grids_[mesh].position;
       layout_.quantisation_error =
@@ -176,6 +178,20 @@ class SceneWriter {
       layout_.position_bits = std::max(layout_.position_bits, grid.bits);
     }
     return {};
+  }
+
+  void encode_levels_side_by_side() {
+    std::vector<LevelToEncode> levels;
+    std::vector<EncodedLevel*> to;
+    encoded_.assign(meshes_.size(), std::vector<EncodedLevel>(range_.count));
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
+      for (std::size_t level = 0; level < range_.count; ++level) {
+        if (repeats_coarser(mesh, level)) continue;
+        levels.push_back({&impl_.sources[mesh], &geometry_[mesh][level], &grids_[mesh]});
+        to.push_back(&encoded_[mesh][level]);
+      }
+    std::vector<EncodedLevel> encoded = encode_levels(levels, options_);
+    for (std::size_t i = 0; i < to.size(); ++i) *to[i] = std::move(encoded[i]);
   }
 
   /// The finest level keeps what it has: it shares no data that are mended.
@@ -194,7 +210,8 @@ class SceneWriter {
       } else {
         const MeshSource& source = impl_.sources[mesh];
         LODESTONE_TRY(written, write_level(builder_, impl_.document.list("meshes")[source.mesh], source,
-                                           geometry_[mesh][level], grids_[mesh], options_));
+                                           geometry_[mesh][level], encoded_[mesh][level], options_));
+        encoded_[mesh][level] = {};
         for (const std::string& note : written.notes) add_note(note);
       }
       layout.geometry_bytes += written.byte_count;
@@ -413,7 +430,8 @@ class SceneWriter {
   std::vector<std::vector<AssetLevel>> levels_;           // with the numbers that the file states
   std::vector<Json> originals_;                           // the meshes as they were in the document
   std::vector<QuantizationGrids> grids_;
-  std::vector<AssetFile> beside_;  // images
+  std::vector<std::vector<EncodedLevel>> encoded_;  // until they are written
+  std::vector<AssetFile> beside_;                   // images
   AssetLayout layout_;
   std::vector<std::uint64_t> collapsed_;  // faces of each level, all instances counted
 };
