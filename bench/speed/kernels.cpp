@@ -100,7 +100,7 @@ void nearest_from(benchmark::State& state) {
   for (const Vec3& p : points) faces.push_back(index.nearest(p, std::numeric_limits<double>::infinity()).face);
   for (auto _ : state) {
     for (std::size_t i = 0; i < points.size(); ++i)
-      benchmark::DoNotOptimize(walk.nearest_from(points[i], faces[i]).squared_distance);
+      benchmark::DoNotOptimize(walk.nearest_from(points[i], faces[i]).on.squared_distance);
   }
   count(state, "points", points.size());
 }

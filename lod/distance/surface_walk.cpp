@@ -1,13 +1,24 @@
 // Descends from face to face, as locating a point by walking does in a triangulation (see O. Devillers, S. Pion,
-// M. Teillaud: Walking in a triangulation, 2002): here what falls is the distance, and the walk goes on over those
-// faces alone that share what the nearest point lies on.
+// M. Teillaud: Walking in a triangulation, 2002). Where the point lies over the inside of a face, which most do, the
+// foot of its perpendicular is the answer unless the surface folds up towards it; elsewhere the walk goes on over the
+// edge that the point lies beyond. Around ridges and corners what falls is the distance, over those faces that share
+// what the nearest point lies on.
 
 #include "distance/surface_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/position_index.h>
 
 namespace lodestone::detail {
+namespace {
+
+constexpr int kMostSteps = 32;  // over edges that a point lies beyond, before distances are compared
+
+}  // namespace
 
 SurfaceWalk::SurfaceWalk(const Mesh& mesh) : place_(mesh.corner_wedge.size()), across_(mesh.corner_wedge.size()) {
   const std::vector<Index> place_of_vertex = places_of(mesh.positions);
@@ -23,36 +34,136 @@ SurfaceWalk::SurfaceWalk(const Mesh& mesh) : place_(mesh.corner_wedge.size()), a
 void SurfaceWalk::update(const Mesh& mesh) {
   triangles_.resize(mesh.face_count());
   for (Index f = 0; f < triangles_.size(); ++f) triangles_[f] = triangle_of(mesh, f);
+  slabs_.resize(mesh.face_count());
+  for (Index f = 0; f < slabs_.size(); ++f) slabs_[f] = slab_of(f);
+  for (Index f = 0; f < slabs_.size(); ++f) add_neighbours(f);
+}
+
+/// Returns how far a point lies from a face's edges, inwards, and from its plane.
+inline std::array<float, 4> SurfaceWalk::Slab::distances(const Vec3& p) const {
+  const float px = static_cast<float>(p.x - static_cast<double>(origin_x));
+  const float py = static_cast<float>(p.y - static_cast<double>(origin_y));
+  const float pz = static_cast<float>(p.z - static_cast<double>(origin_z));
+  std::array<float, 4> d;
+  for (std::size_t i = 0; i < 4; ++i) d[i] = x[i] * px + y[i] * py + z[i] * pz + offset[i];
+  return d;
+}
+
+/// Returns a face's slab without what depends on its neighbours. A face without an area has every point beyond its
+/// edges, and nothing beyond these.
+SurfaceWalk::Slab SurfaceWalk::slab_of(Index face) const {
+  const Triangle& triangle = triangles_[face];
+  const Vec3 corners[3] = {Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)};
+  const Vec3 area = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double twice_area = length(area);
+  Slab slab{};
+  slab.origin_x = triangle.a.x, slab.origin_y = triangle.a.y, slab.origin_z = triangle.a.z;
+  slab.across.fill(kNoIndex);
+  slab.offset.fill(-1);
+  const auto set = [&](std::size_t k, const Vec3& direction, double offset) {
+    slab.x[k] = static_cast<float>(direction.x);
+    slab.y[k] = static_cast<float>(direction.y);
+    slab.z[k] = static_cast<float>(direction.z);
+    slab.offset[k] = static_cast<float>(offset);
+  };
+  const Vec3 normal = area * (1 / twice_area);
+  if (!has_direction(normal)) return slab;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+    const double inverse_length = 1 / length(edge);
+    const Vec3 inwards = cross(normal, edge) * inverse_length;
+    set(k, inwards, dot(corners[0] - corners[k], inwards));
+    slab.inverse_height[k] = static_cast<float>(1 / (twice_area * inverse_length));
+  }
+  set(3, normal, 0);
+  return slab;
+}
+
+/// Notes which faces lie beyond a face's edges, and how these fold. Where several do, or none, a point over the edge is
+/// for comparing distances.
+void SurfaceWalk::add_neighbours(Index face) {
+  Slab& slab = slabs_[face];
+  for (Index k = 0; k < 3; ++k) {
+    const Index corner = 3 * face + k;
+    const Index other = across_[corner];
+    if (other == corner) continue;
+    if (across_[other] != corner) {
+      slab.rise[k] = std::numeric_limits<float>::quiet_NaN();
+      continue;
+    }
+    slab.across[k] = face_of_corner(other);
+    const Triangle& there = triangles_[face_of_corner(other)];
+    const Index apex = previous_corner(other);
+    const Vec3f& beyond = apex % 3 == 0 ? there.a : apex % 3 == 1 ? there.b : there.c;
+    const std::array<float, 4> distances = slab.distances(Vec3(beyond));
+    slab.rise[k] = distances[3];
+    slab.run[k] = -distances[k];
+  }
 }
 
 SurfaceWalk::Place SurfaceWalk::nearest_from(const Vec3& p, Index face) const {
-  Place best = look_at(p, face);
+  Place place;
+  Index reached = face;
+  if (walk_over(p, reached, place)) return place;
+  Candidate best = look_at(p, face);
+  if (reached != face) try_face(p, reached, best);
   for (Index before = kNoIndex; best.face != before;) {
     before = best.face;
     try_around(p, best);
   }
-  return best;
+  return {best.face, weights_at(best.point, triangles_[best.face], best.squared_distance)};
 }
 
-SurfaceWalk::Place SurfaceWalk::look_at(const Vec3& p, Index face) const {
+/// Goes on over edges that the point lies beyond. True where it comes to a face that the point lies over, no farther
+/// away than the first one, and no neighbour of that can have a nearer point: for that it must fold up so far that the
+/// point lies before it. `face` is where the walk has come to.
+bool SurfaceWalk::walk_over(const Vec3& p, Index& face, Place& place) const {
+  float least = std::numeric_limits<float>::infinity();  // no nearer is the first face, squared
+  Index previous = kNoIndex;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Slab& slab = slabs_[face];
+    const std::array<float, 4> d = slab.distances(p);
+    const std::size_t k = d[0] <= d[1] ? (d[0] <= d[2] ? 0 : 2) : (d[1] <= d[2] ? 1 : 2);
+    const float squared = d[3] * d[3];
+    if (d[k] >= 0) {
+      if (squared > least) return false;
+      bool folds = false;
+      for (std::size_t i = 0; i < 3; ++i) folds |= !(d[3] * slab.rise[i] <= d[i] * slab.run[i]);
+      if (folds) return false;
+      place.face = face;
+      place.on.squared_distance = static_cast<double>(squared);
+      for (std::size_t i = 0; i < 3; ++i)
+        place.on.weights[(i + 2) % 3] = static_cast<double>(d[i] * slab.inverse_height[i]);
+      return true;
+    }
+    if (step == 0) least = squared + d[k] * d[k];
+    const Index next = slab.across[k];
+    if (next == kNoIndex || next == previous) return false;
+    previous = face;
+    face = next;
+  }
+  return false;
+}
+
+SurfaceWalk::Candidate SurfaceWalk::look_at(const Vec3& p, Index face) const {
   const NearestPoint nearest = nearest_in_triangle(p, triangles_[face]);
   return {face, nearest.point, nearest.corners, squared_length(p - nearest.point)};
 }
 
-void SurfaceWalk::try_face(const Vec3& p, Index face, Place& best) const {
+void SurfaceWalk::try_face(const Vec3& p, Index face, Candidate& best) const {
   if (face == best.face || is_no_nearer(triangles_[face], best.point, p)) return;
-  const Place there = look_at(p, face);
+  const Candidate there = look_at(p, face);
   if (there.squared_distance < best.squared_distance) best = there;
 }
 
 /// Tries the faces beyond the edge that leaves a corner.
-void SurfaceWalk::try_across(const Vec3& p, Index corner, Place& best) const {
+void SurfaceWalk::try_across(const Vec3& p, Index corner, Candidate& best) const {
   for (Index other = across_[corner]; other != corner; other = across_[other]) try_face(p, face_of_corner(other), best);
 }
 
 /// Tries the faces that share what the best point lies on, an edge or a corner; where it lies inside of a face, those
 /// beyond its edges, which may be nearer in a fold.
-void SurfaceWalk::try_around(const Vec3& p, Place& best) const {
+void SurfaceWalk::try_around(const Vec3& p, Candidate& best) const {
   const Index first = 3 * best.face;
   switch (best.corners) {
     case 0b001:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace lodestone::detail {
 /// A surface to walk on, for points that are known to lie near one of its faces.
 ///
 /// Faces that meet at an edge or a corner are neighbours, by position: sheets that were cut apart are whole here.
+/// Distances are as fine as single precision is over the size of a face and the way from it.
 class SurfaceWalk {
  public:
   explicit SurfaceWalk(const Mesh& mesh);
@@ -23,21 +25,47 @@ class SurfaceWalk {
   /// Where a walk has ended.
   struct Place {
     Index face = kNoIndex;
-    Vec3 point;
-    unsigned corners = 0;  ///< of the face, between which the point lies: bit k stands for corner k
-    double squared_distance = 0;
+    Barycentric on;  ///< the point of the face
   };
   /// Returns a point of the surface to which none of the faces around it has a nearer one, coming from `face`: a local
   /// minimum of the distance, nearly always the nearest point of all where `face` lies near `p`.
   Place nearest_from(const Vec3& p, Index face) const;
 
  private:
-  Place look_at(const Vec3& p, Index face) const;
-  void try_face(const Vec3& p, Index face, Place& best) const;
-  void try_across(const Vec3& p, Index corner, Place& best) const;
-  void try_around(const Vec3& p, Place& best) const;
+  /// What says whether a point lies over the inside of a face, and beyond which edge if not. Edge k leaves corner k;
+  /// the entries of arrays of four are for the three edges, and for the plane.
+  struct alignas(64) Slab {
+    std::array<float, 4> x, y, z;  // Directions: from each edge into the face, and the normal; of length 1.
+    std::array<float, 4> offset;   // What to add to the products with a point, to have distances.
+    std::array<float, 3> rise;     // How high the corner beyond each edge lies over the plane,
+    float origin_x;                // (where points are counted from: the first corner)
+    std::array<float, 3> run;      // and how far from the edge.
+    float origin_y;
+    std::array<float, 3> inverse_height;  // Of the face, from each edge to the corner on the other side.
+    float origin_z;
+    std::array<Index, 3> across;  // The face beyond each edge, where there is just one.
+
+    std::array<float, 4> distances(const Vec3& p) const;
+  };
+
+  /// A point of a triangle near to another point.
+  struct Candidate {
+    Index face = kNoIndex;
+    Vec3 point;
+    unsigned corners = 0;  // Between which the point lies: bit k stands for corner k.
+    double squared_distance = 0;
+  };
+
+  Slab slab_of(Index face) const;
+  void add_neighbours(Index face);
+  bool walk_over(const Vec3& p, Index& face, Place& place) const;
+  Candidate look_at(const Vec3& p, Index face) const;
+  void try_face(const Vec3& p, Index face, Candidate& best) const;
+  void try_across(const Vec3& p, Index corner, Candidate& best) const;
+  void try_around(const Vec3& p, Candidate& best) const;
 
   std::vector<Triangle> triangles_;
+  std::vector<Slab> slabs_;
   std::vector<Index> place_;   // by corner: the first vertex at its position
   Grouping corners_;           // by place
   std::vector<Index> across_;  // by the corner that an edge leaves: the next one at the same edge, in a circle

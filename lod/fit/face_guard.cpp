@@ -104,7 +104,7 @@ OriginalGuard::Corners OriginalGuard::corners_of(const Mesh& level, Index face, 
 OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) const {
   if (near != kNoIndex) {
     const SurfaceWalk::Place place = walk_.nearest_from(point, near);
-    const double distance = std::sqrt(place.squared_distance);
+    const double distance = std::sqrt(place.on.squared_distance);
     if (distance <= reach_) return {place.face, distance};
     near = place.face;
   }

@@ -223,7 +223,7 @@ void Fitting::follow() {
     walk_.emplace(level_);
   for (SurfaceSample& sample : samples_.all()) {
     const SurfaceWalk::Place place = walk_->nearest_from(sample.position, sample.face);
-    sample.place_at(place.face, weights_at(place.point, triangle_of(level_, place.face), place.squared_distance));
+    sample.place_at(place.face, place.on);
   }
 }
 
