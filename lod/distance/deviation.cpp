@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 #include <span>
@@ -173,40 +174,54 @@ class Tally {
       : from_(from), to_(to), to_index_(to_index), to_faces_(to_faces) {}
 
   void operator()(const Vec3& point, Index face) {
-    const SurfaceIndex::Hit hit = to_index_.nearest(point, detail::kUnbounded, hint_);
-    hint_ = hit.face;
-    ++count_;
-    sum_ += hit.distance;
-    squares_ += hit.distance * hit.distance;
-    if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_, face), to_faces_->as_near_as(hit));
+    points_.push_back(point);
+    on_faces_.push_back(face);
   }
 
-  std::size_t count() const { return count_; }
+  /// Looks up the samples, those of neighbouring faces together, and adds up what is found.
+  void finish(const SurfaceIndex& from_index) {
+    const std::span<const Index> ranks = from_index.ranks();
+    std::vector<std::uint64_t> order(count());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint64_t{ranks[on_faces_[i]]} << 32 | i;
+    std::sort(order.begin(), order.end());
+    std::vector<Vec3> points;
+    for (const std::uint64_t i : order) points.push_back(points_[static_cast<Index>(i)]);
+    std::vector<SurfaceIndex::Hit> hits(count(), {0, {}, kNoIndex, 0});
+    to_index_.nearest(points, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) add(hits[i], on_faces_[static_cast<Index>(order[i])]);
+  }
+
+  std::size_t count() const { return points_.size(); }
   double mean() const { return over_count(sum_); }
   double mean_square() const { return over_count(squares_); }
   double mean_angle() const { return over_count(angles_); }
 
  private:
+  void add(const SurfaceIndex::Hit& hit, Index face) {
+    sum_ += hit.distance;
+    squares_ += hit.distance * hit.distance;
+    if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_, face), to_faces_->as_near_as(hit));
+  }
   double least_angle(const Vec3& normal, std::span<const Index> faces) const {
     double least = std::numbers::pi;
     for (const Index face : faces) least = std::min(least, angle_between(normal, area_vector(to_, face)));
     return least;
   }
-  double over_count(double x) const { return x / static_cast<double>(std::max<std::size_t>(count_, 1)); }
+  double over_count(double x) const { return x / static_cast<double>(std::max<std::size_t>(count(), 1)); }
 
   const Mesh& from_;
   const Mesh& to_;
   const SurfaceIndex& to_index_;
   CoincidentFaces* to_faces_;
-  Index hint_ = kNoIndex;
-  std::size_t count_ = 0;
+  std::vector<Vec3> points_;
+  std::vector<Index> on_faces_;  // That they are on.
   double sum_ = 0, squares_ = 0, angles_ = 0;
 };
 
 /// Fills in mean and rms, and returns the mean angle between the normals at the faces' samples and at their nearest
 /// points.
-double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, std::size_t sample_count,
-                     OneSidedDeviation& result) {
+double measure_means(const Mesh& from, const SurfaceIndex& from_index, const Mesh& to, const SurfaceIndex& to_index,
+                     std::size_t sample_count, OneSidedDeviation& result) {
   const std::size_t face_count = std::max(from.face_count(), to.face_count());
   const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
   const Samples samples(from, metros_count);
@@ -220,6 +235,7 @@ double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_in
   samples.for_edges(taken(weights.edges), std::ref(edges));
   // The angle needs a fair number in faces, even where few or none of Metro's are.
   samples.for_faces(taken(std::max(weights.faces, kLeastFaceShare * metros_count)), std::ref(faces));
+  for (Tally* tally : {&vertices, &edges, &faces}) tally->finish(from_index);
 
   const auto combine = [&](double vertex_mean, double edge_mean, double face_mean) {
     return (weights.vertices * vertex_mean + weights.edges * edge_mean + weights.faces * face_mean) /
@@ -273,8 +289,8 @@ Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions
   const SurfaceIndex b_index(b);
   const Goal goal = detail::goal_of(options, larger_diagonal(a, b), 0);
   Deviation result;
-  result.mean_normal_angle = measure_means(a, b, b_index, options.sample_count, result.forward);
-  measure_means(b, a, a_index, options.sample_count, result.backward);
+  result.mean_normal_angle = measure_means(a, a_index, b, b_index, options.sample_count, result.forward);
+  measure_means(b, b_index, a, a_index, options.sample_count, result.backward);
   narrow_maximum(a, b, b_index, options, goal, result.forward);
   narrow_maximum(b, a, a_index, options, goal, result.backward);
   return result;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -35,8 +36,9 @@ using detail::PointSpread;
 using detail::Triangle;
 
 constexpr std::size_t kWidth = detail::kRunWidth;
-constexpr double kBoxSlack = 2e-7;       // Of the largest coordinate in a node: more than the rounding of boxes there.
-constexpr double kFarSlack = 1 + 1e-12;  // Relative, of squared distances: for points far outside a node.
+constexpr double kBoxSlack = 1e-6;      // Of the largest coordinate in a node: more than rounding does there.
+constexpr double kFarSlack = 1 + 1e-5;  // Relative, of squared distances: the same for points far outside a node.
+constexpr double kFarthest = 1e15;      // Points farther away are pulled in, for boxes: squares of floats are finite.
 constexpr std::size_t kMostLevels = 17;
 constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each level.
 
@@ -52,21 +54,30 @@ using Local = std::array<double, 3>;
 /// Coordinates relative to an origin, along axes and in units of their own.
 struct Frame {
   Vec3f origin;
-  std::array<Vec3, 3> axes;  // The mesh's, in local coordinates.
+  std::array<Vec3, 3> axes;
+  double scale = 1;  // What lengths are multiplied by.
 
   Local local(const Vec3& p) const {
-    const Vec3 d = p - Vec3(origin);
-    const Vec3 q = axes[0] * d.x + axes[1] * d.y + axes[2] * d.z;
-    return {q.x, q.y, q.z};
+    const Vec3 d = (p - Vec3(origin)) * scale;
+    return {dot(axes[0], d), dot(axes[1], d), dot(axes[2], d)};
   }
 };
 
 /// The boxes of four children, transposed for arithmetic on four lanes.
-struct alignas(64) Node {
-  Frame frame;
+struct alignas(32) Node {
+  float axes[3][3];  // In local coordinates, by the mesh's.
   float centre[3][kWidth];
   float half[3][kWidth];
+  Vec3f origin;
 
+  void set_frame(const Frame& frame) {
+    origin = frame.origin;
+    for (std::size_t i = 0; i < 3; ++i) {
+      axes[0][i] = static_cast<float>(frame.axes[i].x);
+      axes[1][i] = static_cast<float>(frame.axes[i].y);
+      axes[2][i] = static_cast<float>(frame.axes[i].z);
+    }
+  }
   void set(std::size_t child, const CentredBox& box) {
     for (int axis = 0; axis < 3; ++axis) {
       centre[axis][child] = static_cast<float>(box.centre[axis]);
@@ -77,19 +88,30 @@ struct alignas(64) Node {
 
 /// Twice how far `x` lies outside an interval. The sum of t and |t| needs no comparison, which the compiler would not
 /// turn into lanes.
-double twice_outside(float centre, float half, double x) {
-  const double t = std::fabs(x - static_cast<double>(centre)) - static_cast<double>(half);
+inline float twice_outside(float centre, float half, float x) {
+  const float t = std::fabs(x - centre) - half;
   return t + std::fabs(t);
 }
 
+/// How far `p` lies from a node's origin, in units of the tree.
+inline float offset(double p, float origin, double scale) {
+  return static_cast<float>((p - static_cast<double>(origin)) * scale);
+}
+
 /// Four times the squared distances of a point to the boxes of a node.
-std::array<double, kWidth> box_distances(const Node& node, const Local& p) {
-  std::array<double, kWidth> result;
+inline std::array<float, kWidth> box_distances(const Node& node, const Vec3& p, double scale) {
+  const float x = offset(p.x, node.origin.x, scale);
+  const float y = offset(p.y, node.origin.y, scale);
+  const float z = offset(p.z, node.origin.z, scale);
+  std::array<float, 3> local;
+  for (int axis = 0; axis < 3; ++axis)
+    local[axis] = node.axes[0][axis] * x + node.axes[1][axis] * y + node.axes[2][axis] * z;
+  std::array<float, kWidth> result;
   for (std::size_t i = 0; i < kWidth; ++i) {
-    const double x = twice_outside(node.centre[0][i], node.half[0][i], p[0]);
-    const double y = twice_outside(node.centre[1][i], node.half[1][i], p[1]);
-    const double z = twice_outside(node.centre[2][i], node.half[2][i], p[2]);
-    result[i] = x * x + y * y + z * z;
+    const float u = twice_outside(node.centre[0][i], node.half[0][i], local[0]);
+    const float v = twice_outside(node.centre[1][i], node.half[1][i], local[1]);
+    const float w = twice_outside(node.centre[2][i], node.half[2][i], local[2]);
+    result[i] = u * u + v * v + w * w;
   }
   return result;
 }
@@ -176,12 +198,6 @@ Vec3 point(const Local& p) { return {p[0], p[1], p[2]}; }
 
 Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 
-/// `axes` in the mesh's coordinates; `scale` is what lengths are multiplied by.
-Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes, double scale) {
-  const Vec3 u = axes[0] * scale, v = axes[1] * scale, w = axes[2] * scale;
-  return {origin, {Vec3{u.x, v.x, w.x}, Vec3{u.y, v.y, w.y}, Vec3{u.z, v.z, w.z}}};
-}
-
 }  // namespace
 
 struct SurfaceIndex::Impl {
@@ -192,8 +208,11 @@ struct SurfaceIndex::Impl {
   std::vector<Node> nodes;               // Level by level from the triangles up; node i has the children 4i … 4i + 3.
   std::vector<std::size_t> level_begin;  // The first node of each level.
   double scale = 1;                      // A power of two, which makes the mesh's box about 1 large.
+  Box box;                               // Of the mesh.
 
   void set_scale(const Mesh& mesh);
+  Vec3 cut_off(const Vec3& p) const;
+  float reach(double squared) const;
   void order_faces(const Mesh& mesh);
   std::vector<Index> find_distinct(std::span<const Triangle> all);
   void build_nodes();
@@ -210,7 +229,7 @@ namespace {
 class Search {
  public:
   Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit, std::vector<Index>* all = nullptr)
-      : tree_(tree), p_(p), best_squared_(limit * limit), all_(all) {
+      : tree_(tree), p_(p), far_(tree.cut_off(p)), best_squared_(limit * limit), all_(all) {
     hit_.distance = std::numeric_limits<double>::infinity();
     update_reach();
   }
@@ -253,7 +272,7 @@ class Search {
   }
 
   struct Item {
-    double distance;      // Four times the squared distance of the box.
+    float distance;       // Four times the squared distance of the box.
     std::uint32_t level;  // Of the node, from 1 on.
     Index place;          // On its level.
   };
@@ -262,7 +281,7 @@ class Search {
     ++hit_.visits;
     const std::uint32_t level = item.level - 1;
     const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
-    const std::array<double, kWidth> distances = box_distances(node, node.frame.local(p_));
+    const std::array<float, kWidth> distances = box_distances(node, far_, tree_.scale);
     const std::size_t base = size_;
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       if (!(distances[i] <= reach_)) continue;
@@ -279,18 +298,126 @@ class Search {
     stack_[i] = item;
   }
 
-  /// Finite, so that boxes that contain nothing stay out of it.
-  void update_reach() {
-    const double scaled = 4 * best_squared_ * tree_.scale * tree_.scale * kFarSlack;
-    reach_ = std::min(scaled, std::numeric_limits<double>::max());
-  }
+  void update_reach() { reach_ = tree_.reach(best_squared_); }
 
   const SurfaceIndex::Impl& tree_;
   Vec3 p_;
+  Vec3 far_;  // For boxes.
   double best_squared_;
   std::vector<Index>* all_;
-  double reach_ = 0;
+  float reach_ = 0;
   SurfaceIndex::Hit hit_;
+  std::size_t size_ = 0;
+  std::array<Item, kStackSize> stack_;
+};
+
+/// Several searches at once, for points that lie together: a node is opened once for all that it may concern, and lanes
+/// are points.
+class PacketSearch {
+ public:
+  static constexpr std::size_t kPoints = 8;
+  using Mask = std::uint32_t;  // Bit i stands for point i.
+
+  explicit PacketSearch(const SurfaceIndex::Impl& tree) : tree_(tree) {
+    best_squared_.fill(std::numeric_limits<double>::infinity());
+    reach_.fill(std::numeric_limits<float>::max());
+    face_.fill(kNoIndex);
+  }
+
+  /// Adds one of at most kPoints points; `place` is a triangle that is likely near it, or kNoIndex.
+  void add(const Vec3& p, Index place) {
+    const Vec3 near = tree_.cut_off(p);
+    for (std::size_t i = count_; i < kPoints; ++i) x_[i] = near.x, y_[i] = near.y, z_[i] = near.z;
+    points_[count_++] = p;
+    if (place != kNoIndex) test(count_ - 1, place);
+  }
+
+  void descend() {
+    const Item root{{}, static_cast<std::uint32_t>(tree_.level_begin.size()), 0};
+    push(root, 0);
+    while (size_ > 0) {
+      const Item item = stack_[--size_];
+      const Mask mask = within_reach(item.distances);
+      if (mask != 0) open(item, mask);
+    }
+  }
+
+  SurfaceIndex::Hit result(std::size_t i) const { return {std::sqrt(best_squared_[i]), nearest_[i], face_[i], 0}; }
+
+ private:
+  void test(std::size_t i, std::size_t place) {
+    const Vec3 q = detail::nearest_on_triangle(points_[i], tree_.triangles[place]);
+    const double squared = squared_length(points_[i] - q);
+    const Index face = tree_.faces[place];
+    if (squared > best_squared_[i] || (squared == best_squared_[i] && face >= face_[i])) return;
+    best_squared_[i] = squared;
+    nearest_[i] = q;
+    face_[i] = face;
+    reach_[i] = tree_.reach(squared);
+  }
+
+  using Lanes = std::array<float, kPoints>;
+  struct Item {
+    Lanes distances;      // Four times the squared distances of the box.
+    std::uint32_t level;  // Of the node, from 1 on.
+    Index place;          // On its level.
+  };
+
+  Mask within_reach(const Lanes& distances) const {
+    std::array<Mask, kPoints> bits;
+    for (std::size_t i = 0; i < kPoints; ++i) bits[i] = distances[i] <= reach_[i] ? Mask{1} << i : 0;
+    Mask mask = 0;
+    for (const Mask bit : bits) mask |= bit;
+    return mask & ((Mask{1} << count_) - 1);
+  }
+
+  void open(const Item& item, Mask mask) {
+    const std::uint32_t level = item.level - 1;
+    const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
+    Lanes u, v, w;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const float x = offset(x_[i], node.origin.x, tree_.scale);
+      const float y = offset(y_[i], node.origin.y, tree_.scale);
+      const float z = offset(z_[i], node.origin.z, tree_.scale);
+      u[i] = node.axes[0][0] * x + node.axes[1][0] * y + node.axes[2][0] * z;
+      v[i] = node.axes[0][1] * x + node.axes[1][1] * y + node.axes[2][1] * z;
+      w[i] = node.axes[0][2] * x + node.axes[1][2] * y + node.axes[2][2] * z;
+    }
+    const std::size_t base = size_;
+    for (std::uint32_t child = 0; child < kWidth; ++child) {
+      Item below{{}, level, static_cast<Index>(kWidth * item.place + child)};
+      for (std::size_t i = 0; i < kPoints; ++i) {
+        const float a = twice_outside(node.centre[0][child], node.half[0][child], u[i]);
+        const float b = twice_outside(node.centre[1][child], node.half[1][child], v[i]);
+        const float c = twice_outside(node.centre[2][child], node.half[2][child], w[i]);
+        below.distances[i] = a * a + b * b + c * c;
+      }
+      Mask wanted = within_reach(below.distances) & mask;
+      if (wanted == 0) continue;
+      if (level > 0) {
+        push(below, base);
+        continue;
+      }
+      for (; wanted != 0; wanted &= wanted - 1) test(static_cast<std::size_t>(std::countr_zero(wanted)), below.place);
+    }
+  }
+
+  /// Pushes, keeping the entries from `base` on such that the one nearest to the first point is popped first.
+  void push(const Item& item, std::size_t base) {
+    assert(size_ < kStackSize);
+    std::size_t i = size_++;
+    for (; i > base && stack_[i - 1].distances[0] < item.distances[0]; --i) stack_[i] = stack_[i - 1];
+    stack_[i] = item;
+  }
+
+  const SurfaceIndex::Impl& tree_;
+  std::size_t count_ = 0;
+  std::array<Vec3, kPoints> points_;
+  std::array<double, kPoints> x_, y_, z_;  // For boxes.
+  std::array<double, kPoints> best_squared_;
+  Lanes reach_;
+  std::array<Vec3, kPoints> nearest_;
+  std::array<Index, kPoints> face_;
   std::size_t size_ = 0;
   std::array<Item, kStackSize> stack_;
 };
@@ -298,8 +425,25 @@ class Search {
 }  // namespace
 
 void SurfaceIndex::Impl::set_scale(const Mesh& mesh) {
-  const double size = bounding_box(mesh).diagonal();
+  box = bounding_box(mesh);
+  const double size = box.diagonal();
   if (size > 0 && std::isfinite(size)) scale = std::ldexp(1.0, -std::ilogb(size));
+}
+
+/// Pulls a point into a box around the mesh, so large that few are outside: to all that lies in it the point comes no
+/// farther away.
+Vec3 SurfaceIndex::Impl::cut_off(const Vec3& p) const {
+  const double far = kFarthest / scale;
+  const Vec3 centre = (box.low + box.high) * 0.5;
+  const auto pull = [far](double x, double middle) { return std::clamp(x, middle - far, middle + far); };
+  return {pull(p.x, centre.x), pull(p.y, centre.y), pull(p.z, centre.z)};
+}
+
+/// What four times the squared distances of boxes are compared with, where triangles are wanted that are no farther
+/// than a distance, given by its square. Finite, so that boxes that contain nothing stay out of it.
+float SurfaceIndex::Impl::reach(double squared) const {
+  const double scaled = 4 * squared * scale * scale * kFarSlack;
+  return static_cast<float>(std::min(scaled, static_cast<double>(std::numeric_limits<float>::max())));
 }
 
 void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
@@ -373,23 +517,24 @@ void SurfaceIndex::Impl::add_level(std::size_t child_size, std::size_t child_cou
 /// Makes the node of the triangles from `begin` on, along those axes that leave the smaller boxes.
 Node SurfaceIndex::Impl::make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children,
                                    const Run& all) const {
-  Node node;
   const Vec3f origin = rounded(all.spread.mean);
-  node.frame = make_frame(origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale);
+  Frame frame{origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale};
   ChildExtents extents;
   for (std::size_t i = 0; i < children.size(); ++i) {
-    extents[i].add(node.frame.local(point(children[i].box.low)));
-    extents[i].add(node.frame.local(point(children[i].box.high)));
+    extents[i].add(frame.local(point(children[i].box.low)));
+    extents[i].add(frame.local(point(children[i].box.high)));
   }
-  const Frame turned = make_frame(origin, all.spread.principal_axes(), scale);
+  const Frame turned{origin, all.spread.principal_axes(), scale};
   const ChildExtents turned_extents = child_extents(turned, begin, child_size);
   if (half_area(turned_extents) < half_area(extents)) {
-    node.frame = turned;
+    frame = turned;
     extents = turned_extents;
   }
   double largest = 0;
   for (const Extent& extent : extents) largest = std::max(largest, extent.largest_coordinate());
   const double slack = kBoxSlack * largest + static_cast<double>(std::numeric_limits<float>::min());
+  Node node;
+  node.set_frame(frame);
   for (std::size_t i = 0; i < kWidth; ++i) node.set(i, extents[i].centred(slack));
   return node;
 }
@@ -427,6 +572,27 @@ SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
   search.descend();
   return search.result();
 }
+
+[[gnu::flatten]] LODESTONE_WIDE_VECTORS void SurfaceIndex::nearest(std::span<const Vec3> points,
+                                                                   std::span<Hit> hits) const {
+  assert(points.size() == hits.size());
+  if (empty()) std::fill(hits.begin(), hits.end(), Hit{std::numeric_limits<double>::infinity(), {}, kNoIndex, 0});
+  if (empty()) return;
+  Index last = kNoIndex;
+  for (std::size_t first = 0; first < points.size(); first += PacketSearch::kPoints) {
+    const auto packet = hits.subspan(first, std::min(PacketSearch::kPoints, points.size() - first));
+    PacketSearch search(*impl_);
+    for (std::size_t i = 0; i < packet.size(); ++i) {
+      const Index hint = packet[i].face != kNoIndex ? packet[i].face : last;
+      search.add(points[first + i], hint != kNoIndex ? impl_->places[hint] : kNoIndex);
+    }
+    search.descend();
+    for (std::size_t i = 0; i < packet.size(); ++i) packet[i] = search.result(i);
+    last = packet.back().face;
+  }
+}
+
+std::span<const Index> SurfaceIndex::ranks() const { return impl_->places; }
 
 void SurfaceIndex::within(const Vec3& p, double distance, std::vector<Index>& faces) const {
   faces.clear();

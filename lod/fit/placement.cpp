@@ -88,6 +88,8 @@ constexpr std::size_t kCheckedPoints = 20'000;
 constexpr std::size_t kFewestOfFace = 3;
 constexpr std::size_t kMostOfFace = 12;
 
+constexpr std::size_t kSearchedTogether = 1024;
+
 /// Which of a level's vertices lie where fixed ones of the original do.
 std::vector<std::uint8_t> find_fixed(const Mesh& original, const Mesh& level,
                                      const std::vector<std::uint8_t>& fixed_of_original) {
@@ -207,11 +209,21 @@ void Fitting::classify() {
 /// Finds the face nearest to each sample, wherever that is.
 void Fitting::search() {
   const SurfaceIndex surface(level_);
-  Index last = kNoIndex;  // Samples that follow each other are mostly neighbours.
-  for (SurfaceSample& sample : samples_.all()) {
-    const Index hint = sample.face != kNoIndex ? sample.face : last;
-    last = surface.nearest(sample.position, kUnlimited, hint).face;
-    sample.place_on(level_, last);
+  std::vector<Vec3> points;
+  std::vector<SurfaceIndex::Hit> hits;
+  for (std::size_t first = 0; first < samples_.all().size(); first += kSearchedTogether) {
+    const auto samples = std::span(samples_.all()).subspan(first);
+    points.clear();
+    hits.clear();
+    for (std::size_t i = 0; i < std::min(samples.size(), kSearchedTogether); ++i) {
+      points.push_back(samples[i].position);
+      hits.push_back({0, {}, samples[i].face, 0});
+    }
+    surface.nearest(points, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const auto& [distance, point, face, visits] = hits[i];
+      samples[i].place_at(face, weights_at(point, triangle_of(level_, face), distance * distance));
+    }
   }
 }
 
@@ -366,18 +378,27 @@ double Fitting::forward_error() const {
   const Mesh& original = original_.mesh;
   const SurfaceIndex surface(level_);
   const std::size_t count = std::clamp(kCheckedPoints / original.face_count(), kFewestOfFace, kMostOfFace);
+  std::vector<Vec3> points;
+  std::vector<double> shares;
+  std::vector<SurfaceIndex::Hit> hits;
   double sum = 0;
-  Index near = kNoIndex;
+  const auto add_up = [&] {
+    hits.assign(points.size(), {0, {}, kNoIndex, 0});
+    surface.nearest(points, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) sum += shares[i] * norm_.error(hits[i].distance * hits[i].distance);
+    points.clear();
+    shares.clear();
+  };
   for (const Index f : original_.face_order) {
     const double share = 0.5 * length(area_vector(original, f)) / static_cast<double>(count);
     for (std::size_t k = 0; k < count; ++k) {
-      const Vec3 point = point_on_triangle(original.corner_position(3 * f), original.corner_position(3 * f + 1),
-                                           original.corner_position(3 * f + 2), k + 1);
-      const SurfaceIndex::Hit hit = surface.nearest(point, kUnlimited, near);
-      near = hit.face;
-      sum += share * norm_.error(hit.distance * hit.distance);
+      points.push_back(point_on_triangle(original.corner_position(3 * f), original.corner_position(3 * f + 1),
+                                         original.corner_position(3 * f + 2), k + 1));
+      shares.push_back(share);
     }
+    if (points.size() >= kSearchedTogether) add_up();
   }
+  add_up();
   return sum;
 }
 

@@ -175,6 +175,35 @@ TEST_CASE("the nearest point is that of all faces, whatever the scale and the hi
   }
 }
 
+TEST_CASE("points searched together find what each finds by itself, wherever they lie") {
+  for (const double scale : {1e-30, 1e-3, 1.0, 1e12, 1e30}) {
+    const Mesh mesh = random_soup(5, 300, scale);
+    const SurfaceIndex index(mesh);
+    Random random(23);
+    std::vector<Vec3> points;
+    std::vector<SurfaceIndex::Hit> hits;
+    for (const std::size_t count : {0, 1, 7, 8, 9, 100}) {
+      points.clear();
+      hits.clear();
+      for (std::size_t i = 0; i < count; ++i) {
+        points.emplace_back(random_point(random, random.below(4) == 0 ? 1e5 * scale : 1.5 * scale));
+        const bool hinted = random.below(2) == 0;
+        hits.push_back({0, {}, hinted ? static_cast<Index>(random.below(mesh.face_count())) : kNoIndex, 0});
+      }
+      index.nearest(points, hits);
+      for (std::size_t i = 0; i < count; ++i) {
+        const SurfaceIndex::Hit alone = index.nearest(points[i], kInfinity);
+        CHECK(hits[i].face == alone.face);
+        CHECK(hits[i].point == alone.point);
+        CHECK(hits[i].distance == alone.distance);
+      }
+    }
+  }
+  std::vector<SurfaceIndex::Hit> hits(3);
+  SurfaceIndex(Mesh{}).nearest(std::vector<Vec3>(3), hits);
+  for (const SurfaceIndex::Hit& hit : hits) CHECK((hit.face == kNoIndex && hit.distance == kInfinity));
+}
+
 TEST_CASE("equally near faces: the lowest is named") {
   const Mesh mesh = mesh_of(grid(8, 0, 1));
   const SurfaceIndex index(mesh);
