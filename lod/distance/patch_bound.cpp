@@ -14,8 +14,8 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Twice the signed area of p, q, r.
-template <class Point>
-double area2(const Point& p, const Point& q, const Point& r) {
+template <class P, class Q, class R>
+double area2(const P& p, const Q& q, const R& r) {
   return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
 }
 
@@ -72,7 +72,9 @@ PatchBound::PatchBound(const Mesh& surface)
 
 PatchBound::Point PatchBound::Frame::project(const Vec3& p) const {
   const Vec3 d = p - origin;
-  return {dot(d, x_axis), dot(d, y_axis), dot(d, normal)};
+  Point point{dot(d, x_axis), dot(d, y_axis), dot(d, normal), {}};
+  for (std::size_t i = 0; i < 3; ++i) point.side[i] = area2(corners[i], corners[(i + 1) % 3], point);
+  return point;
 }
 
 /// Sets up the plane of a triangle; false where it has none.
@@ -86,52 +88,62 @@ bool PatchBound::make_frame(const std::array<Vec3, 3>& triangle, double slack, F
   for (const Vec3& corner : triangle) radius = std::max(radius, length(corner - centre));
   if (!(squared_length(frame.normal) > 0) || !(radius > slack)) return false;
   const double shrink = 1 - slack / radius;
-  for (std::size_t i = 0; i < 3; ++i) frame.corners[i] = frame.project(centre + (triangle[i] - centre) * shrink);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 d = (triangle[i] - centre) * shrink;
+    frame.corners[i] = {dot(d, frame.x_axis), dot(d, frame.y_axis)};
+  }
   return true;
 }
 
-/// Whether a line along an edge of `other` or of `triangle` keeps the two apart; `triangle` winds counter-clockwise.
-bool PatchBound::separated(const Points& triangle, const Points& other) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Point& p = triangle[i];
-    const Point& q = triangle[(i + 1) % 3];
-    if (area2(p, q, other[0]) <= 0 && area2(p, q, other[1]) <= 0 && area2(p, q, other[2]) <= 0) return true;
-  }
+/// Whether a line along an edge of `other` or of the triangle keeps the two apart.
+bool PatchBound::separated(const Frame& frame, const Points& other) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (other[0].side[i] <= 0 && other[1].side[i] <= 0 && other[2].side[i] <= 0) return true;
+  for (const Point& p : other)
+    if (p.side[0] > 0 && p.side[1] > 0 && p.side[2] > 0) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     const Point& p = other[i];
     const Point& q = other[(i + 1) % 3];
     if (p.x == q.x && p.y == q.y) continue;  // No line: a border edge comes as a triangle of two points.
     const double inner = area2(p, q, other[(i + 2) % 3]);
-    const double a = area2(p, q, triangle[0]);
-    const double b = area2(p, q, triangle[1]);
-    const double c = area2(p, q, triangle[2]);
+    const double a = area2(p, q, frame.corners[0]);
+    const double b = area2(p, q, frame.corners[1]);
+    const double c = area2(p, q, frame.corners[2]);
     if ((inner >= 0 && a <= 0 && b <= 0 && c <= 0) || (inner <= 0 && a >= 0 && b >= 0 && c >= 0)) return true;
   }
   return false;
 }
 
-/// Returns the greatest absolute height of that part of `subject` which lies over `clip`.
-double PatchBound::clipped_height(const Points& clip, const Points& subject) {
-  std::array<Point, 9> polygon{subject[0], subject[1], subject[2]};  // 3, 4, 6, 9 at worst, however they are rounded.
+/// Returns the greatest absolute height of that part of `subject` which lies over the triangle.
+double PatchBound::clipped_height(const Points& subject) {
+  // All that is needed of a point changes evenly along an edge: its height, and then what it sees of the edges.
+  using Corner = std::array<double, 4>;
+  constexpr std::size_t kMost = 9;  // 3, 4, 6, 9 at worst, however they are rounded.
+  std::array<std::array<Corner, kMost>, 2> polygons;
   std::size_t size = 3;
+  for (std::size_t j = 0; j < size; ++j) {
+    const Point& p = subject[j];
+    polygons[0][j] = {p.height, p.side[0], p.side[1], p.side[2]};
+  }
   for (std::size_t i = 0; i < 3; ++i) {
-    std::array<Point, 9> kept;
+    const std::array<Corner, kMost>& polygon = polygons[i % 2];
+    std::array<Corner, kMost>& kept = polygons[(i + 1) % 2];
     std::size_t kept_size = 0;
     for (std::size_t j = 0; j < size; ++j) {
-      const Point& p = polygon[j];
-      const Point& q = polygon[(j + 1) % size];
-      const double at_p = area2(clip[i], clip[(i + 1) % 3], p);
-      const double at_q = area2(clip[i], clip[(i + 1) % 3], q);
+      const Corner& p = polygon[j];
+      const Corner& q = polygon[j + 1 < size ? j + 1 : 0];
+      const double at_p = p[1 + i];
+      const double at_q = q[1 + i];
       if (at_p >= 0) kept[kept_size++] = p;
       if ((at_p >= 0) == (at_q >= 0)) continue;
       const double t = at_p / (at_p - at_q);
-      kept[kept_size++] = {p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t, p.height + (q.height - p.height) * t};
+      Corner& cut = kept[kept_size++];
+      for (std::size_t k = 0; k < 4; ++k) cut[k] = p[k] + (q[k] - p[k]) * t;
     }
-    polygon = kept;
     size = kept_size;
   }
   double height = 0;
-  for (std::size_t j = 0; j < size; ++j) height = std::max(height, std::abs(polygon[j].height));
+  for (std::size_t j = 0; j < size; ++j) height = std::max(height, std::abs(polygons[1][j][0]));
   return height;
 }
 
@@ -166,7 +178,7 @@ bool PatchBound::add_across(const Frame& frame, Index other, const Point& at_oth
 }
 
 bool PatchBound::add_tested(const Frame& frame, Index face, const Points& points) {
-  const bool over = !separated(frame.corners, points);
+  const bool over = !separated(frame, points);
   state_[face] = 2 * run_ + over;
   if (!over) return false;
   patch_.push_back(face);
@@ -200,7 +212,7 @@ bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& poi
     const Index j = (i + 1) % 3;
     const Index other = opposite_[3 * face + i];
     if (other != kNoIndex && add_across(frame, other, points[j], points[i])) continue;
-    if (other == kNoIndex && !separated(frame.corners, {points[i], points[j], points[j]})) return false;
+    if (other == kNoIndex && !separated(frame, {points[i], points[j], points[j]})) return false;
     winding += crossing(points[i], points[j], centre);
   }
   return true;
@@ -213,13 +225,13 @@ double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, doubl
   Frame frame;
   if (!make_frame(triangle, slack, frame)) return kNone;
   start_patch(frame, start);
-  const Point centre{0, 0, 0};
+  const Point centre{0, 0, 0, {}};
   double height = 0;
   int winding = 0;
   for (std::size_t i = 0; i < patch_.size(); ++i) {
     const Points points = points_[i];
     double face_height = std::max({std::abs(points[0].height), std::abs(points[1].height), std::abs(points[2].height)});
-    if (face_height + slack > target) face_height = clipped_height(frame.corners, points);
+    if (face_height + slack > target) face_height = clipped_height(points);
     height = std::max(height, face_height);
     if (height + slack > target || !visit_outline(frame, patch_[i], points, centre, winding)) return kNone;
   }

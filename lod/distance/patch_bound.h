@@ -32,23 +32,28 @@ class PatchBound {
   std::span<const Index> patch() const { return patch_; }
 
  private:
-  /// A point in a triangle's frame: x and y in its plane, and its height over it.
+  /// A point in a triangle's frame: x and y in its plane, its height over it, and the triangle's edges seen from there:
+  /// twice the area with each, positive inside.
   struct Point {
     double x, y, height;
+    std::array<double, 3> side;
   };
   using Points = std::array<Point, 3>;
 
   /// The triangle in its own plane, a little smaller than it is.
   struct Frame {
+    struct Corner {
+      double x, y;
+    };
     Vec3 origin, x_axis, y_axis, normal;
-    Points corners;
+    std::array<Corner, 3> corners;
 
     Point project(const Vec3& p) const;
   };
 
   static bool make_frame(const std::array<Vec3, 3>& triangle, double slack, Frame& frame);
-  static bool separated(const Points& triangle, const Points& other);
-  static double clipped_height(const Points& clip, const Points& subject);
+  static bool separated(const Frame& frame, const Points& other);
+  static double clipped_height(const Points& subject);
   static int crossing(const Point& p, const Point& q, const Point& centre);
 
   Points project(const Frame& frame, Index face) const;
