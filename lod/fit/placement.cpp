@@ -82,9 +82,9 @@ Effort effort_for(int wanted, std::size_t sample_count) {
   return effort;
 }
 
-// At so many points of the original, spread over its faces, a fit is compared with what was there before; at least and
-// at most so many of each face.
-constexpr std::size_t kCheckedPoints = 20'000;
+// At so many points of the original, spread over its faces, a fit is compared with what was there before: so many of
+// each face at most, and at least of those that are looked at.
+constexpr std::size_t kCheckedPoints = 50'000;
 constexpr std::size_t kFewestOfFace = 3;
 constexpr std::size_t kMostOfFace = 12;
 
@@ -170,11 +170,12 @@ class Fitting {
 
  private:
   void classify();
-  void search();
+  void search(double squared_distance);
   void follow();
   void fence();
   void choose_norm();
   double error() const;
+  double mean_square() const;
   void turn_edges();
   void assemble(SparseSystem& system);
   void add_faces(SparseSystem& system) const;
@@ -206,23 +207,26 @@ void Fitting::classify() {
       if (edge.constrained && line_ends_[v] < 255) ++line_ends_[v];
 }
 
-/// Finds the face nearest to each sample, wherever that is.
-void Fitting::search() {
+/// Finds the face nearest to each sample that is no nearer than that to where it belongs now, wherever that face is.
+void Fitting::search(double squared_distance) {
   const SurfaceIndex surface(level_);
+  std::vector<SurfaceSample*> samples;
+  for (SurfaceSample& sample : samples_.all())
+    if (sample.face == kNoIndex || sample.squared_distance >= squared_distance) samples.push_back(&sample);
   std::vector<Vec3> points;
   std::vector<SurfaceIndex::Hit> hits;
-  for (std::size_t first = 0; first < samples_.all().size(); first += kSearchedTogether) {
-    const auto samples = std::span(samples_.all()).subspan(first);
+  for (std::size_t first = 0; first < samples.size(); first += kSearchedTogether) {
+    const auto together = std::span(samples).subspan(first, std::min(samples.size() - first, kSearchedTogether));
     points.clear();
     hits.clear();
-    for (std::size_t i = 0; i < std::min(samples.size(), kSearchedTogether); ++i) {
-      points.push_back(samples[i].position);
-      hits.push_back({0, {}, samples[i].face, 0});
+    for (const SurfaceSample* sample : together) {
+      points.push_back(sample->position);
+      hits.push_back({0, {}, sample->face, 0});
     }
     surface.nearest(points, hits);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const auto& [distance, point, face, visits] = hits[i];
-      samples[i].place_at(face, weights_at(point, triangle_of(level_, face), distance * distance));
+      together[i]->place_at(face, weights_at(point, triangle_of(level_, face), distance * distance));
     }
   }
 }
@@ -275,6 +279,16 @@ double Fitting::error() const {
   double sum = 0;
   for (const SurfaceSample& sample : samples_.all()) sum += sample.weight * norm_.error(sample.squared_distance);
   return sum;
+}
+
+/// Of the samples' distances.
+double Fitting::mean_square() const {
+  double area = 0, sum = 0;
+  for (const SurfaceSample& sample : samples_.all()) {
+    area += sample.weight;
+    sum += sample.weight * sample.squared_distance;
+  }
+  return area > 0 ? sum / area : 0;
 }
 
 void Fitting::turn_edges() {
@@ -389,8 +403,11 @@ double Fitting::forward_error() const {
     points.clear();
     shares.clear();
   };
-  for (const Index f : original_.face_order) {
-    const double share = 0.5 * length(area_vector(original, f)) / static_cast<double>(count);
+  const std::size_t step = std::max<std::size_t>(original.face_count() * count / kCheckedPoints, 1);
+  for (std::size_t i = 0; i < original_.face_order.size(); i += step) {
+    const Index f = original_.face_order[i];
+    const double share =
+        0.5 * length(area_vector(original, f)) * static_cast<double>(step) / static_cast<double>(count);
     for (std::size_t k = 0; k < count; ++k) {
       points.push_back(point_on_triangle(original.corner_position(3 * f), original.corner_position(3 * f + 1),
                                          original.corner_position(3 * f + 2), k + 1));
@@ -403,7 +420,7 @@ double Fitting::forward_error() const {
 }
 
 void Fitting::run() {
-  search();
+  search(0);
   choose_norm();
   fence();
   double reach = 0;
@@ -419,7 +436,8 @@ void Fitting::run() {
     if (i < effort_.turning) turn_edges();
     move();
     const bool looks_everywhere = effort_.search_every > 0 && (i + 1) % effort_.search_every == 0;
-    looks_everywhere ? search() : follow();
+    follow();
+    if (looks_everywhere) search(mean_square());
     const double now = error();
     if (!(now < best)) break;
     const bool settled = now > effort_.settled * best;
