@@ -44,6 +44,8 @@ constexpr double kLeastSamples = 100'000;     // Metro's default would leave sma
 constexpr double kLeastFaceShare = 0.125;
 constexpr double kLeastWidth = 1.2;  // Of an edge's faces, in steps; an edge of narrower ones gets fewer samples.
 
+double area_of(const Mesh& mesh, Index face) { return 0.5 * length(area_vector(mesh, face)); }
+
 /// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be
 /// 0.
 double add_up(std::vector<double>& sizes) {
@@ -68,13 +70,50 @@ void step_through(const std::vector<double>& until, std::size_t count, const Vis
   }
 }
 
+}  // namespace
+
+struct MeasuredSurface::Impl {
+  /// An edge of any number of faces.
+  struct EdgeFaces {
+    Index corner;  // The first on it.
+    double area;   // Of its faces.
+  };
+
+  explicit Impl(const Mesh& given)
+      : mesh(given), index(given), opposite(detail::opposite_corners(given)), edges(list_edges(given)) {}
+
+  static std::vector<EdgeFaces> list_edges(const Mesh& mesh);
+
+  const Mesh& mesh;
+  SurfaceIndex index;
+  std::vector<Index> opposite;
+  std::vector<EdgeFaces> edges;  // In the order of the faces.
+};
+
+/// Returns each edge once, however many faces it has.
+std::vector<MeasuredSurface::Impl::EdgeFaces> MeasuredSurface::Impl::list_edges(const Mesh& mesh) {
+  std::vector<EdgeFaces> edges;
+  const std::vector<HalfEdge> halves = sorted_edges(mesh);
+  for_each_edge(halves, [&](Edge edge) {
+    double area = 0;
+    for (const HalfEdge& half : edge) area += area_of(mesh, face_of_corner(half.corner));
+    edges.push_back({edge.front().corner, area});
+  });
+  std::sort(edges.begin(), edges.end(), [](const EdgeFaces& a, const EdgeFaces& b) { return a.corner < b.corner; });
+  return edges;
+}
+
+namespace {
+
+using Surface = MeasuredSurface::Impl;
+
 /// The vertices that faces use, the edges and the faces of a mesh, with points on each.
 class Samples {
  public:
   /// `metros_count`: how many samples Metro is asked for.
-  Samples(const Mesh& mesh, double metros_count) : mesh_(mesh) {
-    face_until_.resize(mesh.face_count());
-    for (Index f = 0; f < mesh.face_count(); ++f) face_until_[f] = area_of(f);
+  Samples(const Surface& surface, double metros_count) : surface_(surface), mesh_(surface.mesh) {
+    face_until_.resize(mesh_.face_count());
+    for (Index f = 0; f < mesh_.face_count(); ++f) face_until_[f] = area_of(mesh_, f);
     const double area = add_up(face_until_);
     find_vertices();
     counts_.vertices = static_cast<double>(vertices_.size());
@@ -126,28 +165,9 @@ class Samples {
     }
   }
 
-  struct SampledEdge {
-    Index corner;  // The first on it.
-    double area;   // Of its faces.
-  };
-
-  /// Returns each edge once, however many faces it has, in the order of the faces.
-  std::vector<SampledEdge> list_edges() const {
-    std::vector<SampledEdge> edges;
-    const std::vector<HalfEdge> halves = sorted_edges(mesh_);
-    for_each_edge(halves, [&](Edge edge) {
-      double area = 0;
-      for (const HalfEdge& half : edge) area += area_of(face_of_corner(half.corner));
-      edges.push_back({edge.front().corner, area});
-    });
-    std::sort(edges.begin(), edges.end(),
-              [](const SampledEdge& a, const SampledEdge& b) { return a.corner < b.corner; });
-    return edges;
-  }
-
   /// Returns the length of all edges, in which those whose faces are narrower than `least_width` count less.
   double find_edges(double least_width) {
-    for (const SampledEdge& edge : list_edges()) {
+    for (const Surface::EdgeFaces& edge : surface_.edges) {
       const Vec3 from = mesh_.corner_position(edge.corner);
       const double size = length(mesh_.corner_position(next_corner(edge.corner)) - from);
       const double narrow = edge.area < size * least_width ? edge.area / (size * least_width) : 1;
@@ -157,8 +177,7 @@ class Samples {
     return add_up(edge_until_);
   }
 
-  double area_of(Index face) const { return 0.5 * length(area_vector(mesh_, face)); }
-
+  const Surface& surface_;
   const Mesh& mesh_;
   std::vector<Index> vertices_;     // A corner at each.
   std::vector<Index> edges_;        // The first corner on each.
@@ -170,8 +189,8 @@ class Samples {
 /// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
 class Tally {
  public:
-  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, CoincidentFaces* to_faces = nullptr)
-      : from_(from), to_(to), to_index_(to_index), to_faces_(to_faces) {}
+  Tally(const Surface& from, const Surface& to, CoincidentFaces* to_faces = nullptr)
+      : from_(from), to_(to), to_faces_(to_faces) {}
 
   void operator()(const Vec3& point, Index face) {
     points_.push_back(point);
@@ -179,15 +198,15 @@ class Tally {
   }
 
   /// Looks up the samples, those of neighbouring faces together, and adds up what is found.
-  void finish(const SurfaceIndex& from_index) {
-    const std::span<const Index> ranks = from_index.ranks();
+  void finish() {
+    const std::span<const Index> ranks = from_.index.ranks();
     std::vector<std::uint64_t> order(count());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint64_t{ranks[on_faces_[i]]} << 32 | i;
     std::sort(order.begin(), order.end());
     std::vector<Vec3> points;
     for (const std::uint64_t i : order) points.push_back(points_[static_cast<Index>(i)]);
     std::vector<SurfaceIndex::Hit> hits(count(), {0, {}, kNoIndex, 0});
-    to_index_.nearest(points, hits);
+    to_.index.nearest(points, hits);
     for (std::size_t i = 0; i < hits.size(); ++i) add(hits[i], on_faces_[static_cast<Index>(order[i])]);
   }
 
@@ -200,18 +219,17 @@ class Tally {
   void add(const SurfaceIndex::Hit& hit, Index face) {
     sum_ += hit.distance;
     squares_ += hit.distance * hit.distance;
-    if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_, face), to_faces_->as_near_as(hit));
+    if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_.mesh, face), to_faces_->as_near_as(hit));
   }
   double least_angle(const Vec3& normal, std::span<const Index> faces) const {
     double least = std::numbers::pi;
-    for (const Index face : faces) least = std::min(least, angle_between(normal, area_vector(to_, face)));
+    for (const Index face : faces) least = std::min(least, angle_between(normal, area_vector(to_.mesh, face)));
     return least;
   }
   double over_count(double x) const { return x / static_cast<double>(std::max<std::size_t>(count(), 1)); }
 
-  const Mesh& from_;
-  const Mesh& to_;
-  const SurfaceIndex& to_index_;
+  const Surface& from_;
+  const Surface& to_;
   CoincidentFaces* to_faces_;
   std::vector<Vec3> points_;
   std::vector<Index> on_faces_;  // That they are on.
@@ -220,22 +238,21 @@ class Tally {
 
 /// Fills in mean and rms, and returns the mean angle between the normals at the faces' samples and at their nearest
 /// points.
-double measure_means(const Mesh& from, const SurfaceIndex& from_index, const Mesh& to, const SurfaceIndex& to_index,
-                     std::size_t sample_count, OneSidedDeviation& result) {
-  const std::size_t face_count = std::max(from.face_count(), to.face_count());
+double measure_means(const Surface& from, const Surface& to, std::size_t sample_count, OneSidedDeviation& result) {
+  const std::size_t face_count = std::max(from.mesh.face_count(), to.mesh.face_count());
   const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
   const Samples samples(from, metros_count);
   const Samples::Counts& weights = samples.metros_counts();
   const auto taken = [&](double weight) {
     return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
   };
-  CoincidentFaces to_faces(to, to_index);
-  Tally vertices(from, to, to_index), edges(from, to, to_index), faces(from, to, to_index, &to_faces);
+  CoincidentFaces to_faces(to.mesh, to.index);
+  Tally vertices(from, to), edges(from, to), faces(from, to, &to_faces);
   samples.for_vertices(std::min(samples.vertex_count(), taken(weights.vertices)), std::ref(vertices));
   samples.for_edges(taken(weights.edges), std::ref(edges));
   // The angle needs a fair number in faces, even where few or none of Metro's are.
   samples.for_faces(taken(std::max(weights.faces, kLeastFaceShare * metros_count)), std::ref(faces));
-  for (Tally* tally : {&vertices, &edges, &faces}) tally->finish(from_index);
+  for (Tally* tally : {&vertices, &edges, &faces}) tally->finish();
 
   const auto combine = [&](double vertex_mean, double edge_mean, double face_mean) {
     return (weights.vertices * vertex_mean + weights.edges * edge_mean + weights.faces * face_mean) /
@@ -251,11 +268,11 @@ double measure_means(const Mesh& from, const SurfaceIndex& from_index, const Mes
 constexpr std::size_t kScouted = 1000;
 
 /// Narrows one direction's maximum on its own; leaves mean and rms as they are.
-void narrow_maximum(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, const DeviationOptions& options,
-                    Goal goal, OneSidedDeviation& result) {
-  SurfaceBounds bounds(from, false);
-  PatchBound to_patch(to);
-  SupremumSearch search(from, to_index, to_patch, bounds);
+void narrow_maximum(const Surface& from, const Surface& to, const DeviationOptions& options, Goal goal,
+                    OneSidedDeviation& result) {
+  SurfaceBounds bounds(from.mesh, false);
+  PatchBound to_patch(to.mesh, to.opposite);
+  SupremumSearch search(from.mesh, to.index, to_patch, bounds);
   search.scout(kScouted, goal);
   search.visit_vertices(goal);
   search.split_faces(goal, options.budget);
@@ -283,28 +300,39 @@ Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k) {
                                    mesh.corner_position(3 * face + 2), k);
 }
 
-Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options) {
-  if (a.face_count() == 0 || b.face_count() == 0) return deviation_of_empty(a, b);
-  const SurfaceIndex a_index(a);
-  const SurfaceIndex b_index(b);
-  const Goal goal = detail::goal_of(options, larger_diagonal(a, b), 0);
+MeasuredSurface::MeasuredSurface(const Mesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
+MeasuredSurface::~MeasuredSurface() = default;
+MeasuredSurface::MeasuredSurface(MeasuredSurface&&) noexcept = default;
+MeasuredSurface& MeasuredSurface::operator=(MeasuredSurface&&) noexcept = default;
+
+const Mesh& MeasuredSurface::mesh() const { return impl_->mesh; }
+
+Deviation measure_deviation(const MeasuredSurface& first, const MeasuredSurface& second,
+                            const DeviationOptions& options) {
+  const Surface &a = first.impl(), &b = second.impl();
+  if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return deviation_of_empty(a.mesh, b.mesh);
+  const Goal goal = detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), 0);
   Deviation result;
-  result.mean_normal_angle = measure_means(a, a_index, b, b_index, options.sample_count, result.forward);
-  measure_means(b, b_index, a, a_index, options.sample_count, result.backward);
-  narrow_maximum(a, b, b_index, options, goal, result.forward);
-  narrow_maximum(b, a, a_index, options, goal, result.backward);
+  result.mean_normal_angle = measure_means(a, b, options.sample_count, result.forward);
+  measure_means(b, a, options.sample_count, result.backward);
+  narrow_maximum(a, b, options, goal, result.forward);
+  narrow_maximum(b, a, options, goal, result.backward);
   return result;
 }
 
-Deviation measure_maximum(const Mesh& a, const SurfaceIndex& a_index, const Mesh& b, const DeviationOptions& options,
+Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options) {
+  return measure_deviation(MeasuredSurface(a), MeasuredSurface(b), options);
+}
+
+Deviation measure_maximum(const MeasuredSurface& first, const MeasuredSurface& second, const DeviationOptions& options,
                           double enough) {
-  if (a.face_count() == 0 || b.face_count() == 0) return detail::maximum_of_empty(a, b);
-  const SurfaceIndex b_index(b);
-  SurfaceBounds a_bounds(a, false), b_bounds(b, false);
-  PatchBound a_patch(a), b_patch(b);
-  SupremumSearch forward(a, b_index, b_patch, a_bounds);
-  SupremumSearch backward(b, a_index, a_patch, b_bounds);
-  return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a, b), enough),
+  const Surface &a = first.impl(), &b = second.impl();
+  if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return detail::maximum_of_empty(a.mesh, b.mesh);
+  SurfaceBounds a_bounds(a.mesh, false), b_bounds(b.mesh, false);
+  PatchBound a_patch(a.mesh, a.opposite), b_patch(b.mesh, b.opposite);
+  SupremumSearch forward(a.mesh, b.index, b_patch, a_bounds);
+  SupremumSearch backward(b.mesh, a.index, a_patch, b_bounds);
+  return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), enough),
                              options.budget);
 }
 

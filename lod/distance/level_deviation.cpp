@@ -67,6 +67,7 @@ struct LevelDeviation::Impl {
   DeviationOptions options;
   double diagonal;  // The original's.
   SurfaceIndex index;
+  std::vector<Index> opposite;  // Of the original's corners.
   PatchBound patch;
   PositionIndex vertices;  // Of the original.
   TripleTable original_faces;
@@ -85,7 +86,8 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& wanted)
       options(wanted),
       diagonal(bounding_box(mesh).diagonal()),
       index(mesh),
-      patch(mesh),
+      opposite(detail::opposite_corners(mesh)),
+      patch(mesh, opposite),
       vertices(mesh.positions),
       original_faces(mesh.face_count()),
       face_at(mesh.vertex_count(), kNoIndex),
@@ -199,7 +201,8 @@ void LevelDeviation::Impl::start(SupremumSearch& forward_search, SupremumSearch&
 Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double enough) {
   const SurfaceIndex level_index(level);
   SurfaceBounds backward = inherit(level, moved);
-  PatchBound level_patch(level);
+  const std::vector<Index> level_opposite = detail::opposite_corners(level);
+  PatchBound level_patch(level, level_opposite);
   SupremumSearch forward_search(original, level_index, level_patch, forward);
   SupremumSearch backward_search(level, index, patch, backward);
   Goal goal = detail::goal_of(options, std::max(diagonal, bounding_box(level).diagonal()), enough);

@@ -67,8 +67,8 @@ std::vector<Index> opposite_corners(const Mesh& mesh) {
   return opposite;
 }
 
-PatchBound::PatchBound(const Mesh& surface)
-    : surface_(surface), opposite_(opposite_corners(surface)), state_(surface.face_count(), 0) {}
+PatchBound::PatchBound(const Mesh& surface, std::span<const Index> opposite)
+    : surface_(surface), opposite_(opposite), state_(surface.face_count(), 0) {}
 
 PatchBound::Point PatchBound::Frame::project(const Vec3& p) const {
   const Vec3 d = p - origin;

@@ -21,8 +21,8 @@ std::vector<Index> opposite_corners(const Mesh& mesh);
 /// height of the patch over the triangle bounds the distance.
 class PatchBound {
  public:
-  /// Pre: `surface` outlives the object.
-  explicit PatchBound(const Mesh& surface);
+  /// Pre: both outlive the object; `opposite` are the surface's opposite_corners.
+  PatchBound(const Mesh& surface, std::span<const Index> opposite);
 
   /// Returns an upper bound of the distances from `triangle` to the surface, or infinity where this shows none that is
   /// at most `target`. The patch is looked for around the face `start`; gaps as narrow as `slack` are bridged.
@@ -66,7 +66,7 @@ class PatchBound {
   bool visit_outline(const Frame& frame, Index face, const Points& points, const Point& centre, int& winding);
 
   const Mesh& surface_;
-  std::vector<Index> opposite_;
+  std::span<const Index> opposite_;
   std::vector<Index> patch_;
   std::vector<Points> points_;        // Of the patch's faces.
   std::vector<std::uint32_t> state_;  // Per face: 2·run_ if tested in this run, + 1 if in the patch.

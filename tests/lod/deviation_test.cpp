@@ -256,11 +256,11 @@ TEST_CASE("an empty surface has no nearest point") {
 }
 
 TEST_CASE("empty meshes deviate by infinity from others and not from each other") {
-  const Mesh mesh = mesh_of(tetrahedron());
+  const Mesh mesh = mesh_of(tetrahedron()), empty;
   CHECK(measure_deviation(Mesh{}, Mesh{}).maximum_bound() == 0);
   CHECK(measure_deviation(mesh, Mesh{}).forward.mean == kInfinity);
   CHECK(measure_deviation(Mesh{}, mesh).maximum() == kInfinity);
-  CHECK(measure_maximum(mesh, SurfaceIndex(mesh), Mesh{}, {}).maximum() == kInfinity);
+  CHECK(measure_maximum(MeasuredSurface(mesh), MeasuredSurface(empty), {}).maximum() == kInfinity);
 }
 
 TEST_CASE("every shape equals itself") {
@@ -379,7 +379,7 @@ TEST_CASE("a flat sheet costs few queries however its triangles lie") {
   const Mesh coarse = mesh_of(grid(7, 0, 2));
   DeviationOptions options;
   options.budget = 2000;
-  const Deviation deviation = measure_maximum(fine, SurfaceIndex(fine), coarse, options);
+  const Deviation deviation = measure_maximum(MeasuredSurface(fine), MeasuredSurface(coarse), options);
   CHECK(deviation.maximum_bound() <= allowed(0, options, bounding_box(fine).diagonal()) + 1e-7);
 }
 
@@ -398,7 +398,7 @@ TEST_CASE("the maximum lies between its bounds on meshes of every sort") {
     CHECK(deviation.forward.maximum_bound <= allowed(deviation.forward.maximum, options, diagonal));
     CHECK(deviation.backward.maximum_bound <= allowed(deviation.backward.maximum, options, diagonal));
 
-    const Deviation both = measure_maximum(a, SurfaceIndex(a), b, options);
+    const Deviation both = measure_maximum(MeasuredSurface(a), MeasuredSurface(b), options);
     CHECK(overlap(both, deviation));
     CHECK(both.maximum_bound() <= allowed(both.maximum(), options, diagonal));
   }
@@ -439,9 +439,8 @@ TEST_CASE("a spent budget gives an honest bound") {
 TEST_CASE("enough is enough") {
   const Mesh a = mesh_of(icosphere(3, 0.02, 3));
   const Mesh b = mesh_of(icosphere(2, 0.02, 4));
-  const SurfaceIndex index(a);
-  const Deviation tight = measure_maximum(a, index, b, {});
-  const Deviation loose = measure_maximum(a, index, b, {}, 2 * tight.maximum());
+  const Deviation tight = measure_maximum(MeasuredSurface(a), MeasuredSurface(b), {});
+  const Deviation loose = measure_maximum(MeasuredSurface(a), MeasuredSurface(b), {}, 2 * tight.maximum());
   CHECK(overlap(tight, loose));
   CHECK(loose.maximum_bound() <= 2 * tight.maximum() * (1 + 1e-9));
 }

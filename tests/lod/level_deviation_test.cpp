@@ -119,15 +119,15 @@ TEST_CASE("levels measured one after the other agree with each on its own") {
     options.relative_tolerance = 0.01;
     LevelDeviation with_moves(mesh, options);
     LevelDeviation without_moves(mesh, options);
-    const SurfaceIndex index(mesh);
+    const MeasuredSurface original(mesh);
     const Mesh* last = nullptr;
     for (const Mesh& level : levels) {
       INFO(shape.name << ", level of " << level.face_count() << " faces");
       double moved = kInfinity;
       if (last && last->face_count() > 0)
-        moved = measure_maximum(*last, SurfaceIndex(*last), level, options).forward.maximum_bound;
+        moved = measure_maximum(MeasuredSurface(*last), MeasuredSurface(level), options).forward.maximum_bound;
       last = &level;
-      const Deviation alone = measure_maximum(mesh, index, level, options);
+      const Deviation alone = measure_maximum(original, MeasuredSurface(level), options);
       for (const Deviation& found : {with_moves.measure(level, moved), without_moves.measure(level)}) {
         CHECK(overlap(found, alone));
         if (level.face_count() > 0) CHECK(found.maximum_bound() <= allowed(found.maximum(), options, diagonal));

@@ -1,6 +1,8 @@
 #include "pipeline/level_measure.h"
 
 #include <algorithm>
+#include <mutex>
+#include <optional>
 
 #include <lodestone/core/parallel.h>
 #include <lodestone/lod/attribute_deviation.h>
@@ -31,10 +33,23 @@ DeviationOptions level_measure(double share = 1) {
   return options;
 }
 
-void measure_level(const Scene& scene, const Mesh& whole, const Mesh& level, BuildResult::MeshPart::Level& reported) {
+/// A mesh of a scene, prepared when the first of its levels is measured.
+struct MeasuredMesh {
+  std::once_flag once;
+  std::optional<MeasuredSurface> surface;
+
+  const MeasuredSurface& prepared(const Mesh& mesh) {
+    std::call_once(once, [&] { surface.emplace(mesh); });
+    return *surface;
+  }
+};
+
+void measure_level(const Scene& scene, const MeasuredSurface& original, const Mesh& level,
+                   BuildResult::MeshPart::Level& reported) {
+  const Mesh& whole = original.mesh();
   reported.vertex_count = level.vertex_count();
   const double share = share_of_samples(scene, whole);
-  reported.deviation = measure_deviation(whole, level, level_measure(share));
+  reported.deviation = measure_deviation(original, MeasuredSurface(level), level_measure(share));
   reported.attributes = measure_attributes(whole, level, static_cast<std::size_t>(share * kSceneAttributeSamples));
 }
 
@@ -55,11 +70,11 @@ void total_level(const Scene& scene, std::size_t number, BuildResult& result) {
 }  // namespace
 
 bool lies_within(const Mesh& a, const Mesh& b, double limit) {
-  return measure_maximum(a, SurfaceIndex(a), b, level_measure(), limit).maximum_bound() <= limit;
+  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure(), limit).maximum_bound() <= limit;
 }
 
 double measured_maximum(const Mesh& a, const Mesh& b) {
-  return measure_maximum(a, SurfaceIndex(a), b, level_measure()).maximum_bound();
+  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure()).maximum_bound();
 }
 
 Result<void> measure_levels(const Scene& scene, const LevelPlan& plan, const BuildOptions& options,
@@ -69,12 +84,14 @@ Result<void> measure_levels(const Scene& scene, const LevelPlan& plan, const Bui
   const auto files = static_cast<double>(file.file_count), number_of_file = static_cast<double>(file.file);
   StageProgress progress(observer, BuildStage::MeasuringLevels, std::vector<double>(meshes.size() * count, 1),
                          number_of_file / files, (number_of_file + 1) / files);
+  std::vector<MeasuredMesh> originals(meshes.size());
   for_each_in_parallel(meshes.size() * count, [&](std::size_t i) {
     const std::size_t mesh = i / count, level = i % count, number = file.first + level;
     if (progress.is_cancelled()) return;
     const bool is_as_it_was = !options.storage.draco && is_whole(plan, result.simplified, mesh, number);
     if (!is_as_it_was && (level == 0 || !plan.repeats(mesh, number)))
-      measure_level(scene, scene.meshes()[mesh].mesh, meshes[mesh][level].mesh, result.meshes[mesh].levels[number]);
+      measure_level(scene, originals[mesh].prepared(scene.meshes()[mesh].mesh), meshes[mesh][level].mesh,
+                    result.meshes[mesh].levels[number]);
     progress.update(i, 1);
   });
   if (progress.is_cancelled()) return cancelled();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/surface_index.h>
@@ -40,6 +41,24 @@ struct DeviationOptions {
 /// Source: M. Roberts, The unreasonable effectiveness of quasirandom sequences (2018): R2.
 Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k);
 
+/// A mesh prepared for being measured against others, once for all of them. It may be used by several threads.
+class MeasuredSurface {
+ public:
+  /// Pre: `mesh` outlives the object.
+  explicit MeasuredSurface(const Mesh& mesh);
+  ~MeasuredSurface();
+  MeasuredSurface(MeasuredSurface&&) noexcept;
+  MeasuredSurface& operator=(MeasuredSurface&&) noexcept;
+
+  const Mesh& mesh() const;
+
+  struct Impl;  ///< opaque
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Measures the deviation of two surfaces, both ways. Deterministic. Empty meshes deviate by infinity from others.
 ///
 /// `mean` and `rms` are not area means: to compare with published figures they are over the samples that Metro
@@ -49,11 +68,12 @@ Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k);
 /// parts weigh more than their area. Where faces are thinner than the step between such samples, Metro would take none
 /// between their edges: there edges count the less the thinner the faces are, and the mean nears that of the area.
 /// `options.sample_count` changes only how many samples are taken to estimate these, not what they are.
+Deviation measure_deviation(const MeasuredSurface& a, const MeasuredSurface& b, const DeviationOptions& options = {});
 Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options = {});
 
 /// Measures only the two-sided maximum, narrowed as `options` says; mean and rms stay 0.
 /// Stops early, with maximum_bound ≤ `enough`, where it can show that much: callers who need no more should say so.
-Deviation measure_maximum(const Mesh& a, const SurfaceIndex& a_index, const Mesh& b, const DeviationOptions& options,
+Deviation measure_maximum(const MeasuredSurface& a, const MeasuredSurface& b, const DeviationOptions& options,
                           double enough = 0);
 
 }  // namespace lodestone

@@ -27,8 +27,8 @@ class SurfaceIndex {
   /// Returns the surface's nearest point to `p` among those no farther than `limit`; `hint` is a face likely near it.
   Hit nearest(const Vec3& p, double limit, Index hint = kNoIndex) const;
 
-  /// The same for many points, without a limit, in less time where those that follow each other lie together: the face of
-  /// each hit is its hint on entry, where it has one. Pre: as many hits as points. Visits are not counted.
+  /// The same for many points, without a limit, in less time where those that follow each other lie together: the face
+  /// of each hit is its hint on entry, where it has one. Pre: as many hits as points. Visits are not counted.
   void nearest(std::span<const Vec3> points, std::span<Hit> hits) const;
 
   /// Sets `faces` to all that are no farther than `distance` from `p`, in ascending order.
