@@ -41,6 +41,8 @@ using detail::SurfaceBounds;
 constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's default.
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
 constexpr double kLeastFaceShare = 0.125;
+constexpr std::size_t kSamplesOfStep = 1024;  // Between two words about the progress.
+constexpr double kMeansShare = 0.4;           // Of the work, each way; the maximum takes the rest.
 constexpr double kLeastWidth = 1.2;  // Of an edge's faces, in steps; an edge of narrower ones gets fewer samples.
 
 /// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be
@@ -169,10 +171,12 @@ class Samples {
 /// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
 class Tally {
  public:
-  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, CoincidentFaces* to_faces = nullptr)
-      : from_(from), to_(to), to_index_(to_index), to_faces_(to_faces) {}
+  Tally(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, ProgressSteps& steps,
+        CoincidentFaces* to_faces = nullptr)
+      : from_(from), to_(to), to_index_(to_index), steps_(steps), to_faces_(to_faces) {}
 
   void operator()(const Vec3& point, Index face) {
+    if (!steps_.next()) return;
     const SurfaceIndex::Hit hit = to_index_.nearest(point, detail::kUnbounded, hint_);
     hint_ = hit.face;
     ++count_;
@@ -197,6 +201,7 @@ class Tally {
   const Mesh& from_;
   const Mesh& to_;
   const SurfaceIndex& to_index_;
+  ProgressSteps& steps_;
   CoincidentFaces* to_faces_;
   Index hint_ = kNoIndex;
   std::size_t count_ = 0;
@@ -206,7 +211,7 @@ class Tally {
 /// Fills in mean and rms, and returns the mean angle between the normals at the faces' samples and at their nearest
 /// points.
 double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_index, std::size_t sample_count,
-                     OneSidedDeviation& result) {
+                     const Progress& progress, OneSidedDeviation& result) {
   const std::size_t face_count = std::max(from.face_count(), to.face_count());
   const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
   const Samples samples(from, metros_count);
@@ -214,12 +219,18 @@ double measure_means(const Mesh& from, const Mesh& to, const SurfaceIndex& to_in
   const auto taken = [&](double weight) {
     return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
   };
-  CoincidentFaces to_faces(to, to_index);
-  Tally vertices(from, to, to_index), edges(from, to, to_index), faces(from, to, to_index, &to_faces);
-  samples.for_vertices(std::min(samples.vertex_count(), taken(weights.vertices)), std::ref(vertices));
-  samples.for_edges(taken(weights.edges), std::ref(edges));
+  const std::size_t on_vertices = std::min(samples.vertex_count(), taken(weights.vertices));
+  const std::size_t on_edges = taken(weights.edges);
   // The angle needs a fair number in faces, even where few or none of Metro's are.
-  samples.for_faces(taken(std::max(weights.faces, kLeastFaceShare * metros_count)), std::ref(faces));
+  const std::size_t in_faces = taken(std::max(weights.faces, kLeastFaceShare * metros_count));
+  ProgressSteps steps(progress, on_vertices + on_edges + in_faces, kSamplesOfStep);
+  progress.add(0);
+  CoincidentFaces to_faces(to, to_index);
+  Tally vertices(from, to, to_index, steps), edges(from, to, to_index, steps),
+      faces(from, to, to_index, steps, &to_faces);
+  samples.for_vertices(on_vertices, std::ref(vertices));
+  samples.for_edges(on_edges, std::ref(edges));
+  samples.for_faces(in_faces, std::ref(faces));
 
   const auto combine = [&](double vertex_mean, double edge_mean, double face_mean) {
     return (weights.vertices * vertex_mean + weights.edges * edge_mean + weights.faces * face_mean) /
@@ -260,6 +271,13 @@ Deviation deviation_of_empty(const Mesh& a, const Mesh& b) {
   return result;
 }
 
+/// What is known where nothing was looked at.
+Deviation unmeasured() {
+  Deviation result;
+  result.forward.maximum_bound = result.backward.maximum_bound = detail::kUnbounded;
+  return result;
+}
+
 }  // namespace
 
 Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k) {
@@ -270,13 +288,19 @@ Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k) {
 Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options) {
   if (a.face_count() == 0 || b.face_count() == 0) return deviation_of_empty(a, b);
   const SurfaceIndex a_index(a);
+  if (!options.progress.add(0)) return unmeasured();
   const SurfaceIndex b_index(b);
+  if (!options.progress.add(0)) return unmeasured();
   const Goal goal = detail::goal_of(options, larger_diagonal(a, b), 0);
   Deviation result;
-  result.mean_normal_angle = measure_means(a, b, b_index, options.sample_count, result.forward);
-  measure_means(b, a, a_index, options.sample_count, result.backward);
+  const auto means = [&] { return options.progress.part(kMeansShare); };
+  result.mean_normal_angle = measure_means(a, b, b_index, options.sample_count, means(), result.forward);
+  if (!options.progress.add(0)) return unmeasured();
+  measure_means(b, a, a_index, options.sample_count, means(), result.backward);
+  if (!options.progress.add(0)) return unmeasured();
   narrow_maximum(a, b, b_index, options, goal, result.forward);
   narrow_maximum(b, a, a_index, options, goal, result.backward);
+  options.progress.reach(1);
   return result;
 }
 
