@@ -12,6 +12,7 @@
 
 #include "build_output.h"
 #include "build_run.h"
+#include "interruption.h"
 #include "messages.h"
 #include "staged_file.h"
 #include "standard_streams.h"
@@ -78,6 +79,7 @@ Result<Outcome> build_each(const std::vector<BuildCommand>& parts, ProgressBar& 
     const Result<Outcome> result = build_one(parts[i], progress);
     if (result && *result != Outcome::Done) outcome = *result;
     if (result) continue;
+    if (result.error().code == ErrorCode::Cancelled) return result;
     print_error(quoted(parts[i].input) + " is not built: " + describe(result.error()));
     if (!first_error) first_error = result.error().code;
     ++failed;
@@ -233,6 +235,7 @@ Result<std::vector<BuildCommand>> BuildCommand::split(MadeFolders& folders) cons
 Result<Outcome> BuildCommand::run() const {
   if (!input_format.empty() && !files.reads_standard_input())
     return fail(ErrorCode::InvalidArgument, "--input-format is for the standard input: give - as the input");
+  const Interruption interruption;
   MadeFolders folders;
   LODESTONE_TRY(const std::vector<BuildCommand> parts, split(folders));
   ProgressBar progress(!quiet);

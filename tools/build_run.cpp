@@ -18,6 +18,7 @@
 #include "build_settings.h"
 #include "file_words.h"
 #include "input_files.h"
+#include "interruption.h"
 #include "messages.h"
 #include "pipeline/stopwatch.h"
 #include "text_table.h"
@@ -51,7 +52,7 @@ class BarObserver : public BuildObserver {
       overall += kStages[i].share * done_[i];
     }
     bar_.update(name, overall);
-    return true;
+    return !Interruption::is_wanted();
   }
 
   void note(const std::string& sentence) override {
@@ -185,6 +186,7 @@ Result<void> write(const BuildCommand& options, const Scene& scene, BuildReport&
   if (options.html) {
     LODESTONE_TRY(page, build_page(report, scene, writes_stream(options)));
   }
+  if (Interruption::is_wanted()) return fail(ErrorCode::Cancelled, "cancelled");
   return write_outputs(options, report, page);
 }
 

@@ -17,6 +17,7 @@
 #include "compare_command.h"
 #include "extract_command.h"
 #include "inspect_command.h"
+#include "interruption.h"
 #include "messages.h"
 #include "words.h"
 
@@ -31,6 +32,7 @@ enum class ExitCode : int {
   Unsupported = 3,
   NotWritten = 4,
   TargetNotMet = 5,
+  Interrupted = 130,  // as shells say of a program that Ctrl-C ended
 };
 
 ExitCode exit_code(ErrorCode code) {
@@ -44,8 +46,9 @@ ExitCode exit_code(ErrorCode code) {
     case ErrorCode::Unsupported:
       return ExitCode::Unsupported;
     case ErrorCode::NotWritten:
-    case ErrorCode::Cancelled:
       return ExitCode::NotWritten;
+    case ErrorCode::Cancelled:
+      return ExitCode::Interrupted;
   }
   return ExitCode::Usage;
 }
@@ -63,7 +66,7 @@ class Program {
     app_.set_version_flag("-V,--version", "lodestone " LODESTONE_VERSION);
     app_.footer(
         "Exit codes: 0 done, 1 usage, 2 input unreadable, 3 unsupported, 4 output not written,\n"
-        "5 target not met (with --strict)\n\n"
+        "5 target not met (with --strict), 130 interrupted\n\n"
         "Example:\n"
         "  lodestone bunny.obj bunny.glb        (the same as lodestone build bunny.obj -o bunny.glb)\n"
         "  lodestone extract bunny.glb --error 0.1% -o bunny-near.glb");
@@ -153,4 +156,8 @@ ExitCode guarded_main(int argument_count, const char* const* arguments) {
 }  // namespace
 }  // namespace lodestone::tool
 
-int main(int argc, char** argv) { return static_cast<int>(lodestone::tool::guarded_main(argc, argv)); }
+int main(int argc, char** argv) {
+  const lodestone::tool::ExitCode code = lodestone::tool::guarded_main(argc, argv);
+  if (code == lodestone::tool::ExitCode::Interrupted) lodestone::tool::end_as_asked();
+  return static_cast<int>(code);
+}

@@ -214,6 +214,8 @@ class SceneWriter {
         encoded_[mesh][level] = {};
         for (const std::string& note : written.notes) add_note(note);
       }
+      if (!options_.progress.add(1 / static_cast<double>(range_.count * meshes_.size())))
+        return fail(ErrorCode::Cancelled, "cancelled");
       layout.geometry_bytes += written.byte_count;
       collapsed_[level] += written.collapsed_face_count * scene_.meshes()[mesh].instance_count;
       layout.face_count += written.face_count * scene_.meshes()[mesh].instance_count;

@@ -226,6 +226,8 @@ class StreamWriter {
     for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
       LODESTONE_TRY(const auto columns, encoder.encode(bounds[i], bounds[i + 1]));
       add_chunk(columns, bounds[i], bounds[i + 1], encoder.face_count());
+      const double done = static_cast<double>(bounds[i + 1]) / static_cast<double>(bounds.back());
+      if (!options_.progress.reach(done)) return fail(ErrorCode::Cancelled, "cancelled");
     }
     fill_header();
     std::vector<std::byte> out = write_stream_start(start_);

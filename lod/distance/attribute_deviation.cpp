@@ -21,6 +21,8 @@ namespace {
 
 using namespace detail;
 
+constexpr std::size_t kFacesOfStep = 16;  // between two words about the progress
+
 /// An attribute that both meshes have.
 struct Shared {
   std::size_t width = 0;
@@ -90,10 +92,11 @@ std::vector<double> differences(const std::vector<Shared>& shared, const Mesh& o
 
 /// Calls `visit(face, weights, area)` for points spread evenly over every face: the centroids of its n² parts.
 template <class Visit>
-void for_each_sample(const Mesh& mesh, std::size_t sample_count, const Visit& visit) {
+void for_each_sample(const Mesh& mesh, std::size_t sample_count, const Progress& progress, const Visit& visit) {
+  ProgressSteps steps(progress, mesh.face_count(), kFacesOfStep);
   const double per_face = static_cast<double>(sample_count) / static_cast<double>(mesh.face_count());
   const auto n = static_cast<int>(std::clamp(std::sqrt(per_face), 1.0, 16.0));
-  for (Index f = 0; f < mesh.face_count(); ++f) {
+  for (Index f = 0; f < mesh.face_count() && steps.next(); ++f) {
     const double area = 0.5 * length(area_vector(mesh, f));
     for (int i = 0; i < n; ++i)
       for (int j = 0; i + j < n; ++j)
@@ -107,13 +110,14 @@ void for_each_sample(const Mesh& mesh, std::size_t sample_count, const Visit& vi
 
 }  // namespace
 
-std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const Mesh& level, std::size_t sample_count) {
+std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const Mesh& level, std::size_t sample_count,
+                                                   const Progress& progress) {
   std::vector<Shared> shared = shared_attributes(original, level);
   std::vector<AttributeDeviation> result;
   if (shared.empty() || original.face_count() == 0) return result;
   std::map<Index, MaterialFaces> parts = split(level);
   double total = 0;
-  for_each_sample(original, sample_count, [&](Index face, const std::array<double, 3>& weights, double area) {
+  for_each_sample(original, sample_count, progress, [&](Index face, const std::array<double, 3>& weights, double area) {
     const auto part = parts.find(original.material_of(face));
     if (part == parts.end()) return;  // all of its material is gone: there is nothing to compare with
     Vec3 p;

@@ -42,6 +42,8 @@ using detail::SurfaceBounds;
 constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's default.
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
 constexpr double kLeastFaceShare = 0.125;
+constexpr std::size_t kSamplesOfStep = 1024;  // Between two words about the progress.
+constexpr double kMeansShare = 0.4;           // Of the work, each way; the maximum takes the rest.
 constexpr double kLeastWidth = 1.2;  // Of an edge's faces, in steps; an edge of narrower ones gets fewer samples.
 
 double area_of(const Mesh& mesh, Index face) { return 0.5 * length(area_vector(mesh, face)); }
@@ -197,17 +199,26 @@ class Tally {
     on_faces_.push_back(face);
   }
 
-  /// Looks up the samples, those of neighbouring faces together, and adds up what is found.
-  void finish() {
+  /// Looks up the samples, those of neighbouring faces together, and adds up what is found; stops where the work is
+  /// cancelled.
+  void finish(ProgressSteps& steps) {
     const std::span<const Index> ranks = from_.index.ranks();
     std::vector<std::uint64_t> order(count());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint64_t{ranks[on_faces_[i]]} << 32 | i;
     std::sort(order.begin(), order.end());
     std::vector<Vec3> points;
-    for (const std::uint64_t i : order) points.push_back(points_[static_cast<Index>(i)]);
-    std::vector<SurfaceIndex::Hit> hits(count(), {0, {}, kNoIndex, 0});
-    to_.index.nearest(points, hits);
-    for (std::size_t i = 0; i < hits.size(); ++i) add(hits[i], on_faces_[static_cast<Index>(order[i])]);
+    std::vector<SurfaceIndex::Hit> hits;
+    for (std::size_t first = 0; first < order.size(); first += points.size()) {
+      points.clear();
+      for (std::size_t i = first; i < std::min(first + kSamplesOfStep, order.size()); ++i)
+        points.push_back(points_[static_cast<Index>(order[i])]);
+      hits.assign(points.size(), {0, {}, kNoIndex, 0});
+      to_.index.nearest(points, hits);
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (!steps.next()) return;
+        add(hits[i], on_faces_[static_cast<Index>(order[first + i])]);
+      }
+    }
   }
 
   std::size_t count() const { return points_.size(); }
@@ -238,7 +249,8 @@ class Tally {
 
 /// Fills in mean and rms, and returns the mean angle between the normals at the faces' samples and at their nearest
 /// points.
-double measure_means(const Surface& from, const Surface& to, std::size_t sample_count, OneSidedDeviation& result) {
+double measure_means(const Surface& from, const Surface& to, std::size_t sample_count, const Progress& progress,
+                     OneSidedDeviation& result) {
   const std::size_t face_count = std::max(from.mesh.face_count(), to.mesh.face_count());
   const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
   const Samples samples(from, metros_count);
@@ -252,7 +264,9 @@ double measure_means(const Surface& from, const Surface& to, std::size_t sample_
   samples.for_edges(taken(weights.edges), std::ref(edges));
   // The angle needs a fair number in faces, even where few or none of Metro's are.
   samples.for_faces(taken(std::max(weights.faces, kLeastFaceShare * metros_count)), std::ref(faces));
-  for (Tally* tally : {&vertices, &edges, &faces}) tally->finish();
+  ProgressSteps steps(progress, vertices.count() + edges.count() + faces.count(), kSamplesOfStep);
+  progress.add(0);
+  for (Tally* tally : {&vertices, &edges, &faces}) tally->finish(steps);
 
   const auto combine = [&](double vertex_mean, double edge_mean, double face_mean) {
     return (weights.vertices * vertex_mean + weights.edges * edge_mean + weights.faces * face_mean) /
@@ -293,6 +307,13 @@ Deviation deviation_of_empty(const Mesh& a, const Mesh& b) {
   return result;
 }
 
+/// What is known where nothing was looked at.
+Deviation unmeasured() {
+  Deviation result;
+  result.forward.maximum_bound = result.backward.maximum_bound = detail::kUnbounded;
+  return result;
+}
+
 }  // namespace
 
 Vec3 point_on_face(const Mesh& mesh, Index face, std::size_t k) {
@@ -313,15 +334,23 @@ Deviation measure_deviation(const MeasuredSurface& first, const MeasuredSurface&
   if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return deviation_of_empty(a.mesh, b.mesh);
   const Goal goal = detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), 0);
   Deviation result;
-  result.mean_normal_angle = measure_means(a, b, options.sample_count, result.forward);
-  measure_means(b, a, options.sample_count, result.backward);
+  const auto means = [&] { return options.progress.part(kMeansShare); };
+  result.mean_normal_angle = measure_means(a, b, options.sample_count, means(), result.forward);
+  if (!options.progress.add(0)) return unmeasured();
+  measure_means(b, a, options.sample_count, means(), result.backward);
+  if (!options.progress.add(0)) return unmeasured();
   narrow_maximum(a, b, options, goal, result.forward);
   narrow_maximum(b, a, options, goal, result.backward);
+  options.progress.reach(1);
   return result;
 }
 
 Deviation measure_deviation(const Mesh& a, const Mesh& b, const DeviationOptions& options) {
-  return measure_deviation(MeasuredSurface(a), MeasuredSurface(b), options);
+  const MeasuredSurface first(a);
+  if (!options.progress.add(0)) return unmeasured();
+  const MeasuredSurface second(b);
+  if (!options.progress.add(0)) return unmeasured();
+  return measure_deviation(first, second, options);
 }
 
 Deviation measure_maximum(const MeasuredSurface& first, const MeasuredSurface& second, const DeviationOptions& options,

@@ -15,10 +15,11 @@ namespace {
 // How far a piece that vanishes was from what is left is bounded roughly, so it is measured sooner.
 constexpr double kStepAfterVanishing = 0.01;
 
-DeviationOptions measuring_options() {
+DeviationOptions measuring_options(const Progress& progress) {
   DeviationOptions options;
   options.relative_tolerance = 0.01;
   options.budget = 100'000;
+  options.progress = progress.part(0);
   return options;
 }
 
@@ -44,13 +45,13 @@ float DeviationBounds::round_up(double value) {
   return static_cast<double>(f) < value ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-DeviationBounds::DeviationBounds(const Mesh& full, double step)
+DeviationBounds::DeviationBounds(const Mesh& full, double step, const Progress& progress)
     : full_(&full),
       step_(step),
       measured_faces_(full.face_count()),
       since_measured_(full.face_count()),
       since_start_(full.face_count()) {
-  if (step > 0) level_.emplace(full, measuring_options());
+  if (step > 0 && progress.add(0)) level_.emplace(full, measuring_options(progress));
   bound_.reserve(full.vertex_count());
 }
 

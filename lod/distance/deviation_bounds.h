@@ -20,7 +20,7 @@ namespace lodestone::detail {
 class DeviationBounds {
  public:
   /// Measures whenever a share `step` of the faces has gone since the last time; never where it is 0.
-  DeviationBounds(const Mesh& full, double step);
+  DeviationBounds(const Mesh& full, double step, const Progress& progress);
 
   /// Writes how far each record of a removal, just done, moves the surface at most. Changes nothing here, so that it
   /// may be called from several threads.

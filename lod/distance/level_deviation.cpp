@@ -59,7 +59,7 @@ struct LevelDeviation::Impl {
   void carry_nearest(const std::vector<Index>& face_now, double moved);
   void carry_bounds(const std::vector<Index>& face_now, double moved);
   void place_common_vertices(const Mesh& level, const std::vector<Index>& names, SurfaceBounds& backward);
-  void bound_new_faces(const Mesh& level, const Goal& goal, SurfaceBounds& backward);
+  void bound_new_faces(const Mesh& level, Goal& goal, SurfaceBounds& backward);
   void place_at(Index vertex, const Triangle& triangle, Index face);
   void start(SupremumSearch& forward_search, SupremumSearch& backward_search, Goal& goal) const;
 
@@ -167,7 +167,7 @@ void LevelDeviation::Impl::place_common_vertices(const Mesh& level, const std::v
 
 /// Bounds the level's new faces by the patches of the original they stand for, and takes those patches' vertices, which
 /// have lost the faces they were near, as near the new ones.
-void LevelDeviation::Impl::bound_new_faces(const Mesh& level, const Goal& goal, SurfaceBounds& backward) {
+void LevelDeviation::Impl::bound_new_faces(const Mesh& level, Goal& goal, SurfaceBounds& backward) {
   std::vector<bool> lost(forward.vertices.size());
   for (std::size_t v = 0; v < lost.size(); ++v) lost[v] = forward.vertices[v].face == kNoIndex;
   for (Index f = 0; f < level.face_count(); ++f) {
@@ -176,6 +176,7 @@ void LevelDeviation::Impl::bound_new_faces(const Mesh& level, const Goal& goal, 
     const Triangle triangle = detail::triangle_of(level, f);
     backward.faces[f] = patch.bound({Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)}, start, goal.threshold(),
                                     goal.patch_slack());
+    goal.step();
     for (const Index g : patch.patch()) {
       for (Index corner = 3 * g; corner < 3 * g + 3; ++corner) {
         const Index v = original.corner_vertex(corner);

@@ -20,6 +20,8 @@ namespace {
 /// Covers rounding: far above that of a distance, far below any tolerance.
 constexpr double kRoundingSlack = 1 + 1e-12;
 
+constexpr std::size_t kFacesOfStep = 256;  // looked at between two words about the progress
+
 using Corners = std::array<PartCorner, 3>;
 using Distances = std::array<double, 3>;  // From the three corners to one face.
 
@@ -136,7 +138,9 @@ void SupremumSearch::scout(std::size_t count, Goal& goal) {
 void SupremumSearch::visit_vertices(Goal& goal) {
   const Index count = static_cast<Index>(from_.face_count());
   for (Index face = 0; face < count; ++face) {
-    if (is_open(face, goal)) visit_face(face, goal);
+    if (!is_open(face, goal)) continue;
+    visit_face(face, goal);
+    goal.step();
   }
 }
 
@@ -221,9 +225,14 @@ Corners SupremumSearch::corners_of(Index face) const {
 void SupremumSearch::split_faces(Goal& goal, std::size_t budget) {
   const Index count = static_cast<Index>(from_.face_count());
   for (Index face = 0; face < count; ++face) {
-    if (is_open(face, goal)) add_face(face, goal);
+    if (!is_open(face, goal)) continue;
+    add_face(face, goal);
+    goal.step();
   }
-  for (; budget > 0 && !heap_.empty() && heap_.front().bound > goal.threshold(); --budget) split(pop(), goal);
+  for (; budget > 0 && !heap_.empty() && heap_.front().bound > goal.threshold(); --budget) {
+    split(pop(), goal);
+    goal.step();
+  }
   for (const Part& part : heap_) bounds_.faces[part.face] = std::max(bounds_.faces[part.face], part.bound);
   heap_.clear();
   corners_.clear();
@@ -302,6 +311,7 @@ Goal goal_of(const DeviationOptions& options, double diagonal, double enough) {
   goal.absolute_tolerance = options.absolute_tolerance;
   if (!(goal.absolute_tolerance > 0)) goal.absolute_tolerance = 1e-7 * diagonal;
   goal.enough = enough;
+  goal.steps = {options.progress.part(0), 0, kFacesOfStep};
   return goal;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/progress.h>
 #include <lodestone/lod/deviation.h>
 
 #include "distance/patch_bound.h"
@@ -21,10 +22,15 @@ struct Goal {
   double relative_tolerance = 0;
   double absolute_tolerance = 0;
   double enough = 0;
-  double found = 0;  ///< a distance that some point really has
+  double found = 0;     ///< a distance that some point really has
+  ProgressSteps steps;  ///< of the work
 
   /// Upper bounds at or below this need no narrowing.
   double threshold() const { return std::max(enough, found * (1 + relative_tolerance) + absolute_tolerance); }
+  /// Takes a step of the work: once that is cancelled, any bound is enough.
+  void step() {
+    if (!steps.next()) enough = std::numeric_limits<double>::infinity();
+  }
   /// What bounds by patches may add.
   double patch_slack() const { return 0.25 * absolute_tolerance; }
 };

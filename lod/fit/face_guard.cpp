@@ -116,6 +116,7 @@ OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) con
 OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near) const {
   const auto& [a, b, c] = corners;
   Standing result{corners, 0, -1, near, {}};
+  if (!steps_.next()) return result;
   const auto visit = [&](const Vec3& point) {
     const Nearest found = nearest(point, result.near);
     result.distance = std::max(result.distance, found.distance);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/progress.h>
 #include <lodestone/lod/surface_index.h>
 
 #include "distance/surface_walk.h"
@@ -23,9 +24,10 @@ void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions);
 /// have become the nearer one meanwhile is let pass.
 class OriginalGuard {
  public:
-  /// `index` and `walk` are the original's; all outlive the guard.
-  OriginalGuard(const Mesh& original, const SurfaceIndex& index, const SurfaceWalk& walk)
-      : original_(original), index_(index), walk_(walk) {}
+  /// `index` and `walk` are the original's; each face looked at is one of the steps, and once these are cancelled none
+  /// is. All outlive the guard.
+  OriginalGuard(const Mesh& original, const SurfaceIndex& index, const SurfaceWalk& walk, ProgressSteps& steps)
+      : original_(original), index_(index), walk_(walk), steps_(steps) {}
 
   /// How a level's faces lie to the original, by some points of each.
   struct Survey {
@@ -71,6 +73,7 @@ class OriginalGuard {
   const Mesh& original_;
   const SurfaceIndex& index_;
   const SurfaceWalk& walk_;
+  ProgressSteps& steps_;
   double reach_ = std::numeric_limits<double>::infinity();
   std::vector<Standing> standing_;  // by face
 };

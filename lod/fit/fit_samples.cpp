@@ -64,8 +64,8 @@ SurfaceSamples::SurfaceSamples(const Mesh& original, std::span<const Index> face
   samples_ = std::move(all);
 }
 
-LineSamples::LineSamples(const Mesh& original) {
-  for (const MeshEdge& edge : list_edges(original)) {
+LineSamples::LineSamples(const Mesh& original, std::span<const MeshEdge> edges) {
+  for (const MeshEdge& edge : edges) {
     if (!edge.constrained) continue;
     const Vec3 a(original.positions[edge.vertices[0]]);
     const Vec3 b(original.positions[edge.vertices[1]]);

@@ -8,6 +8,7 @@
 #include <lodestone/core/mesh.h>
 
 #include "distance/triangle.h"
+#include "fit/constrained_edges.h"
 
 namespace lodestone::detail {
 
@@ -64,7 +65,8 @@ struct LineSample {
 
 class LineSamples {
  public:
-  explicit LineSamples(const Mesh& original);
+  /// `edges` are the original's.
+  LineSamples(const Mesh& original, std::span<const MeshEdge> edges);
   const std::vector<LineSample>& all() const { return samples_; }
 
  private:

@@ -50,6 +50,9 @@ constexpr double kRoam = 1.25;       // how far out of the original's box, of th
 constexpr double kFineShare = 0.3;
 constexpr double kSoftening = 0.1;
 
+constexpr std::size_t kSamplesOfStep = 1024;  // between two words about the progress
+constexpr double kFirstShare = 0.2;           // of the work: to find where each sample belongs
+
 // What a level is worth, by effort. Edges are turned in the first iterations, and the vertices follow. Large levels
 // settle sooner, and each iteration of theirs costs more: where there are more than so many samples there are fewer.
 struct Effort {
@@ -129,25 +132,32 @@ std::vector<Index> faces_in_order(const Mesh& mesh) {
 
 /// The original, and what all fits to it need.
 struct Original {
-  explicit Original(const Mesh& given)
-      : mesh(given),
-        box(bounding_box(given)),
-        face_order(faces_in_order(given)),
-        lines(given),
-        layers(has_layers(list_edges(given)) ? std::make_optional(without_layers(given)) : std::nullopt),
-        skin(layers ? *layers : given),
-        skin_index(skin),
-        skin_walk(skin) {}
+  Original(const Mesh& given, const Progress& progress);
+
+  /// False where the work was cancelled before all was made.
+  bool is_ready() const { return skin_walk.has_value(); }
 
   const Mesh& mesh;
   Box box;
   std::vector<Index> face_order;
-  LineSamples lines;
+  std::optional<LineSamples> lines;
   std::optional<Mesh> layers;
-  const Mesh& skin;  // as the guard sees it, where sheets lie on one another
-  SurfaceIndex skin_index;
-  SurfaceWalk skin_walk;
+  const Mesh* skin;  // as the guard sees it, where sheets lie on one another
+  std::optional<SurfaceIndex> skin_index;
+  std::optional<SurfaceWalk> skin_walk;
 };
+
+Original::Original(const Mesh& given, const Progress& progress)
+    : mesh(given), box(bounding_box(given)), face_order(faces_in_order(given)), skin(&given) {
+  if (!progress.add(0)) return;
+  const std::vector<MeshEdge> edges = list_edges(given);
+  lines.emplace(given, edges);
+  if (has_layers(edges)) skin = &layers.emplace(without_layers(given));
+  if (!progress.add(0)) return;
+  skin_index.emplace(*skin);
+  if (!progress.add(0)) return;
+  skin_walk.emplace(*skin);
+}
 
 class Fitting {
  public:
@@ -156,19 +166,23 @@ class Fitting {
         level_(level),
         is_fine_(static_cast<double>(level.face_count()) >=
                  kFineShare * static_cast<double>(original.mesh.face_count())),
+        progress_(options.progress),
+        steps_(progress_.part(0), 0, kSamplesOfStep),
         edges_(list_edges(level)),
-        guard_(original.skin, original.skin_index, original.skin_walk),
+        guard_(*original.skin, *original.skin_index, *original.skin_walk, steps_),
         fixed_(find_fixed(original.mesh, level, options.fixed)),
         samples_(original.mesh, original.face_order,
                  effort_for(options.effort, 0).samples_per_face * level.face_count()),
         effort_(effort_for(options.effort, samples_.all().size())),
-        near_line_(original.lines.all().size(), kNoIndex) {
+        near_line_(original.lines->all().size(), kNoIndex) {
     classify();
   }
 
   void run();
 
  private:
+  /// Hears whether the fit is still wanted.
+  bool goes_on() const { return progress_.add(0); }
   void classify();
   void search(double squared_distance);
   void follow();
@@ -181,12 +195,14 @@ class Fitting {
   void add_faces(SparseSystem& system) const;
   void add_lines(SparseSystem& system);
   void move();
-  double forward_error() const;
+  double forward_error();
   void keep_in_box(std::vector<Vec3>& positions) const;
 
   const Original& original_;
   Mesh& level_;
   bool is_fine_;
+  Progress progress_;
+  ProgressSteps steps_;  // points and faces looked at
   std::vector<MeshEdge> edges_;
   std::optional<SurfaceWalk> walk_;     // of the faces as they are now
   std::optional<SparseSystem> system_;  // the same
@@ -209,6 +225,7 @@ void Fitting::classify() {
 
 /// Finds the face nearest to each sample that is no nearer than that to where it belongs now, wherever that face is.
 void Fitting::search(double squared_distance) {
+  if (!goes_on()) return;
   const SurfaceIndex surface(level_);
   std::vector<SurfaceSample*> samples;
   for (SurfaceSample& sample : samples_.all())
@@ -225,6 +242,7 @@ void Fitting::search(double squared_distance) {
     }
     surface.nearest(points, hits);
     for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (!steps_.next()) return;
       const auto& [distance, point, face, visits] = hits[i];
       together[i]->place_at(face, weights_at(point, triangle_of(level_, face), distance * distance));
     }
@@ -233,11 +251,13 @@ void Fitting::search(double squared_distance) {
 
 /// Follows the samples over the surface to where it is nearest to them now.
 void Fitting::follow() {
+  if (!goes_on()) return;
   if (walk_)
     walk_->update(level_);
   else
     walk_.emplace(level_);
   for (SurfaceSample& sample : samples_.all()) {
+    if (!steps_.next()) return;
     const SurfaceWalk::Place place = walk_->nearest_from(sample.position, sample.face);
     sample.place_at(place.face, place.on);
   }
@@ -293,9 +313,9 @@ double Fitting::mean_square() const {
 
 void Fitting::turn_edges() {
   if (detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_, fixed_) == 0) return;
-  edges_ = list_edges(level_);
   walk_.reset();
   system_.reset();
+  if (goes_on()) edges_ = list_edges(level_);
 }
 
 void Fitting::assemble(SparseSystem& system) {
@@ -348,8 +368,8 @@ void Fitting::add_lines(SparseSystem& system) {
   segments.wedge_vertex.resize(segments.positions.size());
   for (Index v = 0; v < segments.wedge_vertex.size(); ++v) segments.wedge_vertex[v] = v;
   const SurfaceIndex index(segments);
-  const std::vector<LineSample>& samples = original_.lines.all();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
+  const std::vector<LineSample>& samples = original_.lines->all();
+  for (std::size_t i = 0; i < samples.size() && steps_.next(); ++i) {
     const LineSample& sample = samples[i];
     const Index hint = near_line_[i] < of_face.size() ? near_line_[i] : kNoIndex;
     const SurfaceIndex::Hit hit = index.nearest(sample.position, kUnlimited, hint);
@@ -369,11 +389,14 @@ void Fitting::add_lines(SparseSystem& system) {
 }
 
 void Fitting::move() {
+  if (!goes_on()) return;
   if (!system_) system_.emplace(level_);
   assemble(*system_);
+  if (!goes_on()) return;
   std::vector<Vec3> moved;
   for (const Vec3f& p : level_.positions) moved.emplace_back(p);
   system_->solve(moved, kSolverSteps);
+  if (!goes_on()) return;
   keep_in_box(moved);
   std::vector<Vec3f> positions;
   for (const Vec3& p : moved)
@@ -388,7 +411,7 @@ void Fitting::move() {
 
 /// The sum again, over points inside the original's faces that the fit does not go by: these stand for their areas even
 /// where large faces meet small ones at an angle.
-double Fitting::forward_error() const {
+double Fitting::forward_error() {
   const Mesh& original = original_.mesh;
   const SurfaceIndex surface(level_);
   const std::size_t count = std::clamp(kCheckedPoints / original.face_count(), kFewestOfFace, kMostOfFace);
@@ -399,12 +422,13 @@ double Fitting::forward_error() const {
   const auto add_up = [&] {
     hits.assign(points.size(), {0, {}, kNoIndex, 0});
     surface.nearest(points, hits);
-    for (std::size_t i = 0; i < hits.size(); ++i) sum += shares[i] * norm_.error(hits[i].distance * hits[i].distance);
+    for (std::size_t i = 0; i < hits.size() && steps_.next(); ++i)
+      sum += shares[i] * norm_.error(hits[i].distance * hits[i].distance);
     points.clear();
     shares.clear();
   };
   const std::size_t step = std::max<std::size_t>(original.face_count() * count / kCheckedPoints, 1);
-  for (std::size_t i = 0; i < original_.face_order.size(); i += step) {
+  for (std::size_t i = 0; i < original_.face_order.size() && !progress_.is_cancelled(); i += step) {
     const Index f = original_.face_order[i];
     const double share =
         0.5 * length(area_vector(original, f)) * static_cast<double>(step) / static_cast<double>(count);
@@ -419,8 +443,10 @@ double Fitting::forward_error() const {
   return sum;
 }
 
+/// Where the work is cancelled the level is left anywhere.
 void Fitting::run() {
   search(0);
+  if (progress_.is_cancelled()) return;
   choose_norm();
   fence();
   double reach = 0;
@@ -432,12 +458,15 @@ void Fitting::run() {
   const double error_of_unfitted = is_fine_ ? forward_error() + survey.error : 0;
   double best = error();
   Mesh best_level = level_;
-  for (int i = 0; i < effort_.moves; ++i) {
+  progress_.reach(kFirstShare);
+  const Progress moves = progress_.part(1 - kFirstShare);
+  for (int i = 0; i < effort_.moves && !progress_.is_cancelled(); ++i) {
     if (i < effort_.turning) turn_edges();
     move();
     const bool looks_everywhere = effort_.search_every > 0 && (i + 1) % effort_.search_every == 0;
     follow();
     if (looks_everywhere) search(mean_square());
+    moves.reach(static_cast<double>(i + 1) / effort_.moves);
     const double now = error();
     if (!(now < best)) break;
     const bool settled = now > effort_.settled * best;
@@ -445,6 +474,7 @@ void Fitting::run() {
     best_level = level_;
     if (settled && i + 1 >= effort_.turning) break;
   }
+  if (progress_.is_cancelled()) return;
   level_ = std::move(best_level);
   // Where most faces have no error yet there is little to gain, and the samples may mislead.
   if (is_fine_ && forward_error() + guard_.survey(level_, norm_).error > error_of_unfitted) level_ = unfitted;
@@ -460,13 +490,16 @@ Mesh compacted(const Mesh& mesh) {
 }  // namespace
 
 struct LevelFitter::Impl {
-  explicit Impl(const Mesh& mesh) : original(mesh), attributes(mesh) {}
+  Impl(const Mesh& mesh, const Progress& progress) : original(mesh, progress) {
+    if (original.is_ready() && progress.add(0)) attributes.emplace(mesh);
+  }
 
   Original original;
-  AttributeLookup attributes;
+  std::optional<AttributeLookup> attributes;  // none where the work was cancelled
 };
 
-LevelFitter::LevelFitter(const Mesh& original) : impl_(std::make_unique<Impl>(original)) {}
+LevelFitter::LevelFitter(const Mesh& original, const Progress& progress)
+    : impl_(std::make_unique<Impl>(original, progress)) {}
 LevelFitter::~LevelFitter() = default;
 LevelFitter::LevelFitter(LevelFitter&&) noexcept = default;
 LevelFitter& LevelFitter::operator=(LevelFitter&&) noexcept = default;
@@ -474,14 +507,17 @@ LevelFitter& LevelFitter::operator=(LevelFitter&&) noexcept = default;
 Mesh LevelFitter::fit(const Mesh& level, const PlacementOptions& options) const {
   Mesh fitted = compacted(level);
   if (fitted.face_count() == 0 || impl_->original.mesh.face_count() == 0) return fitted;
+  if (!impl_->attributes) return fitted;
   const Mesh before = fitted;
   Fitting(impl_->original, fitted, options).run();
-  impl_->attributes.look_up(before, fitted);
+  if (options.progress.is_cancelled()) return before;
+  impl_->attributes->look_up(before, fitted);
+  options.progress.reach(1);
   return fitted;
 }
 
 Mesh optimise_placement(const Mesh& original, const Mesh& level, const PlacementOptions& options) {
-  return LevelFitter(original).fit(level, options);
+  return LevelFitter(original, options.progress.part(0)).fit(level, options);
 }
 
 }  // namespace lodestone

@@ -6,12 +6,14 @@
 
 namespace lodestone::detail {
 
-void EvaluatorPool::for_each(std::size_t count, std::size_t chunk,
+void EvaluatorPool::for_each(std::size_t count, std::size_t chunk, const Progress& progress,
                              const std::function<void(RemovalEvaluator&, std::size_t)>& job) {
   for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
+    if (progress.is_cancelled()) return;
     std::unique_ptr<RemovalEvaluator> evaluator = take();
     for (std::size_t i = begin; i < end; ++i) job(*evaluator, i);
     give_back(std::move(evaluator));
+    progress.add(static_cast<double>(end - begin) / static_cast<double>(count));
   });
 }
 

@@ -17,8 +17,10 @@ class EvaluatorPool {
   EvaluatorPool(const SimplifyState& state, const SimplifyOptions& options)
       : state_(&state), options_(&options), attributes_(state.mesh, options.weights), rules_(state.mesh) {}
 
-  /// Calls `job(evaluator, i)` for every i below `count`, `chunk` of them at a time with one evaluator.
-  void for_each(std::size_t count, std::size_t chunk, const std::function<void(RemovalEvaluator&, std::size_t)>& job);
+  /// Calls `job(evaluator, i)` for every i below `count`, `chunk` of them at a time with one evaluator; `progress` is
+  /// of all together. Once it is cancelled no more are called.
+  void for_each(std::size_t count, std::size_t chunk, const Progress& progress,
+                const std::function<void(RemovalEvaluator&, std::size_t)>& job);
 
   /// See FaceRules. Pre: no evaluation is under way.
   bool relax_angles(bool beyond) { return rules_.relax_angles(beyond); }

@@ -52,6 +52,9 @@ constexpr double kManyTurn = 0.05;
 constexpr std::size_t kBatch = 2048;
 constexpr std::size_t kChunk = 64;
 
+// Of the work: the first evaluation of all vertices. The rest is told by the faces that have gone.
+constexpr double kFirstShare = 0.2;
+
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
 
 /// A removal of this round: the vertex chosen, and what was found and done about it.
@@ -71,9 +74,11 @@ class Simplifier {
         state_{mesh, std::move(connectivity), CarriedPoints(mesh), {}, {}, {}},
         evaluators_(state_, options_),
         builder_(mesh, state_.connectivity),
-        bounds_(mesh, options.measure_step),
+        bounds_(mesh, options.measure_step, options.progress),
         locked_(find_locked(state_.connectivity, options_)),
-        pieces_(mesh, state_.connectivity) {}
+        pieces_(mesh, state_.connectivity),
+        rounds_(options.progress.part(1 - kFirstShare)),
+        within_round_(options.progress.part(0)) {}
 
   SimplifyResult run();
 
@@ -83,7 +88,7 @@ class Simplifier {
     return state_.connectivity.has_vertex(vertex) && state_.connectivity.site(vertex) == vertex;
   }
   bool is_locked(Index vertex) const { return !locked_.empty() && locked_[vertex] != 0; }
-  void evaluate(std::span<const Index> vertices);
+  void evaluate(std::span<const Index> vertices, const Progress& progress);
   void evaluate(RemovalEvaluator& evaluator, Index vertex);
   bool choose_candidates();
   bool run_round();
@@ -97,7 +102,8 @@ class Simplifier {
   void update_dirty();
   bool is_kept_by_turning(Index vertex) const;
   bool relax_angles(bool beyond_right_angles);
-  bool target_met();
+  bool is_over();
+  void tell() const;
   void note_charge(double cost);
   std::vector<float> charges() const;
 
@@ -139,6 +145,8 @@ class Simplifier {
   Index round_ = 0;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
+  Progress rounds_;        // told by the faces that have gone
+  Progress within_round_;  // hears
   std::size_t evaluation_count_ = 0;
 };
 
@@ -156,12 +164,12 @@ void Simplifier::prepare() {
   claimed_.assign(count, 0);
   for (Index v = 0; v < count; ++v)
     if (is_standing(v)) standing_.push_back(v);
-  evaluate(standing_);
+  evaluate(standing_, options_.progress.part(kFirstShare));
   price_pieces();
 }
 
-void Simplifier::evaluate(std::span<const Index> vertices) {
-  evaluators_.for_each(vertices.size(), kChunk,
+void Simplifier::evaluate(std::span<const Index> vertices, const Progress& progress) {
+  evaluators_.for_each(vertices.size(), kChunk, progress,
                        [&](RemovalEvaluator& evaluator, std::size_t i) { evaluate(evaluator, vertices[i]); });
   evaluation_count_ += vertices.size();
 }
@@ -212,7 +220,7 @@ bool Simplifier::choose_candidates() {
   looked_at_.clear();
   for (const Index v : candidates_)
     if (stale_[v] != 0) looked_at_.push_back(v);
-  evaluate(looked_at_);
+  evaluate(looked_at_, within_round_);
   candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit_; }),
                     candidates_.end());
   std::sort(candidates_.begin(), candidates_.end(), cheaper);
@@ -240,7 +248,7 @@ std::size_t Simplifier::plan_batch(std::size_t candidate) {
     if (batch_size_ == batch_.size()) batch_.emplace_back();
     batch_[batch_size_++].vertex = vertex;
   }
-  evaluators_.for_each(batch_size_, kChunk,
+  evaluators_.for_each(batch_size_, kChunk, within_round_,
                        [&](RemovalEvaluator& evaluator, std::size_t i) { describe(evaluator, batch_[i]); });
   return candidate;
 }
@@ -256,10 +264,10 @@ void Simplifier::describe(RemovalEvaluator& evaluator, PlannedRemoval& planned) 
   if (rejects(planned.evaluation.verdict)) cost_[vertex] = kIllegal;
 }
 
-/// Does the removals planned; false where the target was met before all were.
+/// Does the removals planned; false where the run was over before all were.
 bool Simplifier::remove_batch() {
   std::size_t done = 0;
-  for (; done < batch_size_ && !target_met(); ++done) remove(batch_[done]);
+  for (; done < batch_size_ && !is_over(); ++done) remove(batch_[done]);
   for_each_chunk(done, kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) follow_up(batch_[i]);
   });
@@ -322,12 +330,18 @@ std::vector<float> Simplifier::charges() const {
   return result;
 }
 
-bool Simplifier::target_met() {
+bool Simplifier::is_over() {
+  if (options_.progress.is_cancelled()) return true;
   if (state_.connectivity.face_count() <= options_.stop.min_faces) {
     stop_reason_ = StopReason::Faces;
     return true;
   }
   return false;
+}
+
+void Simplifier::tell() const {
+  rounds_.reach(1 -
+                static_cast<double>(state_.connectivity.face_count()) / static_cast<double>(state_.mesh.face_count()));
 }
 
 /// Looks anew at what lies around this round's removals.
@@ -341,7 +355,7 @@ void Simplifier::update_dirty() {
     if (cost_[site] == kIllegal || limit_ == 0) looked_at_.push_back(site);
     stale_[site] = 1;
   }
-  evaluate(looked_at_);
+  evaluate(looked_at_, within_round_);
 }
 
 /// Removes the candidates whose rings do not meet, and pieces that cost no more; false where nothing is left to try.
@@ -352,6 +366,7 @@ bool Simplifier::run_round() {
   for (std::size_t candidate = 0; candidate < candidates_.size();) {
     candidate = plan_batch(candidate);
     if (!remove_batch()) break;
+    tell();
   }
   update_dirty();
   builder_.end_round();
@@ -371,7 +386,7 @@ bool Simplifier::relax_angles(bool beyond_right_angles) {
   std::vector<Index> kept;
   for (const Index v : standing_)
     if (is_kept_by_turning(v)) kept.push_back(v);
-  evaluate(kept);
+  evaluate(kept, within_round_);
   return true;
 }
 
@@ -416,7 +431,7 @@ std::vector<Index> Simplifier::choose_pieces(bool stuck) {
 bool Simplifier::remove_pieces(bool stuck) {
   bool any = false;
   for (const Index piece : choose_pieces(stuck)) {
-    if (target_met() || (pieces_.left() == 1 && !options_.vanish)) break;
+    if (is_over() || (pieces_.left() == 1 && !options_.vanish)) break;
     remove_piece(piece);
     any = true;
   }
@@ -502,22 +517,19 @@ BlockedCounts Simplifier::count_blocked() const {
 
 SimplifyResult Simplifier::run() {
   prepare();
-  const double full_faces = static_cast<double>(state_.connectivity.face_count());
-  while (!target_met()) {
+  while (!is_over()) {
     if (!run_round() && !relax_angles(true)) break;
+    if (options_.progress.is_cancelled()) break;
     bounds_.end_round(state_.connectivity);
     if (bounds_.current() > options_.stop.max_deviation) {
       stop_reason_ = StopReason::Deviation;
       break;
     }
-    const double left = static_cast<double>(state_.connectivity.face_count()) / full_faces;
-    if (options_.progress && !options_.progress(1 - left)) {
-      stop_reason_ = StopReason::Cancelled;
-      break;
-    }
+    tell();
   }
   SimplifyResult result;
   result.blocked = count_blocked();
+  if (options_.progress.is_cancelled()) stop_reason_ = StopReason::Cancelled;
   if (stop_reason_ == StopReason::Stuck && result.blocked.error > 0) stop_reason_ = StopReason::CurvatureError;
   bounds_.stop_measuring();
   result.stop_reason = stop_reason_;
@@ -525,6 +537,7 @@ SimplifyResult Simplifier::run() {
   result.charge = charges();
   result.locked = std::move(locked_);
   result.mesh = builder_.finish(bounds_.bounds());
+  options_.progress.reach(1);
   return result;
 }
 

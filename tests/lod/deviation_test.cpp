@@ -436,6 +436,29 @@ TEST_CASE("a spent budget gives an honest bound") {
   }
 }
 
+TEST_CASE("measuring that is cancelled at any call makes no other, and its bound is wide, but true") {
+  const Mesh a = mesh_of(icosphere(kReduced ? 2 : 4, 0.1, 3));
+  const Mesh b = mesh_of(icosphere(kReduced ? 2 : 4, 0.1, 4));
+  const double found = measure_deviation(a, b).forward.maximum;
+  bool ends = false;
+  for (int last = 1; !ends; last = 2 * last + 1) {
+    CAPTURE(last);
+    int calls = 0;
+    double done = 0;
+    DeviationOptions options;
+    options.sample_count = 20'000;
+    options.progress = [&](double share) {
+      done = share;
+      return ++calls < last;
+    };
+    const Deviation deviation = measure_deviation(a, b, options);
+    CHECK(deviation.forward.maximum_bound >= found);
+    CHECK(calls <= last);
+    ends = calls < last;
+    if (ends) CHECK(done == Approx(1));
+  }
+}
+
 TEST_CASE("enough is enough") {
   const Mesh a = mesh_of(icosphere(3, 0.02, 3));
   const Mesh b = mesh_of(icosphere(2, 0.02, 4));

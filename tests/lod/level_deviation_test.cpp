@@ -161,6 +161,20 @@ TEST_CASE("a spent budget gives a bound that is wide, but true") {
   }
 }
 
+TEST_CASE("a measurement that is cancelled gives a bound that is wide, but true, and spoils none before") {
+  for (const auto& [name, mesh, levels] : small_levels()) {
+    INFO(name);
+    bool is_wanted = true;
+    DeviationOptions options;
+    options.progress = [&](double) { return is_wanted; };
+    LevelDeviation narrow(mesh), ended(mesh, options);
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      is_wanted = i == 0;
+      CHECK(overlap(narrow.measure(levels[i]), ended.measure(levels[i])));
+    }
+  }
+}
+
 TEST_CASE("the same levels in the same order give the same numbers, also where the object moves in between") {
   const Mesh mesh = mesh_of(torus(16, 8));
   const std::vector<Mesh> levels = {clustered(mesh, 0.1), clustered(mesh, 0.15), clustered(mesh, 0.3), mesh};

@@ -287,6 +287,25 @@ TEST_CASE("more effort fits better, and the least is better than none") {
   CHECK(best < usual);
 }
 
+TEST_CASE("a fit that is cancelled at any call makes no other and leaves the level as it was") {
+  const Mesh mesh = mesh_of(icosphere(4, 0.02, 3));
+  const Mesh level = level_of(mesh, 0.3);
+  bool ends = false;
+  for (int last = 1; !ends; last = 2 * last + 1) {
+    CAPTURE(last);
+    int calls = 0;
+    PlacementOptions options;
+    options.progress = [&](double) { return ++calls < last; };
+    const Mesh fitted = optimise_placement(mesh, level, options);
+    CHECK(calls <= last);
+    ends = calls < last;
+    bool is_same = fitted.face_count() == level.face_count();
+    for (Index c = 0; is_same && c < 3 * level.face_count(); ++c)
+      is_same = fitted.positions[fitted.corner_vertex(c)] == level.positions[level.corner_vertex(c)];
+    CHECK(is_same == !ends);
+  }
+}
+
 TEST_CASE("the same level is fitted to the same bytes") {
   const Mesh mesh = mesh_of(icosphere(4, 0.02, 3));
   const Mesh level = level_of(mesh, 0.1);

@@ -248,6 +248,23 @@ TEST_CASE("a run stops at the faces asked for, at the deviation asked for, or wh
   CHECK(validate(result.mesh));
 }
 
+TEST_CASE("a run that is cancelled at any call makes no other, and what it gives is valid") {
+  const Mesh mesh = mesh_of(seam_sphere(24, 16));
+  bool ends = false;
+  for (int last = 1; !ends; last = last + 1 + last / 4) {
+    CAPTURE(last);
+    int calls = 0;
+    SimplifyOptions options;
+    options.progress = [&](double) { return ++calls < last; };
+    const SimplifyResult result = simplified(mesh, options);
+    CHECK(calls <= last);
+    ends = calls < last;
+    CHECK((result.stop_reason == StopReason::Cancelled) == !ends);
+    CHECK(validate(result.mesh));
+    CHECK(face_counts(result.mesh).back() == mesh.face_count());
+  }
+}
+
 TEST_CASE("the same input gives the same records") {
   const Mesh mesh = mesh_of(seam_sphere(24, 16));
   const SimplifyResult a = simplified(mesh);

@@ -9,6 +9,7 @@
 
 #include "support/catch.h"
 #include "support/data.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
 namespace lodestone::test {
@@ -56,18 +57,49 @@ TEST_CASE("a build says how far it is: each stage from 0 to 1, never back") {
   }
 }
 
-TEST_CASE("a build can be cancelled at any of its calls") {
+TEST_CASE("a build can be cancelled at any of its calls, and makes no other then") {
   const Scene scene = ball_scene();
   Watcher whole;
   REQUIRE(build_asset(scene, {}, whole));
-  for (std::size_t call = 1; call <= whole.calls; ++call) {
-    CAPTURE(call, whole.calls);
-    Watcher watcher;
-    watcher.last_call = call;
-    const auto built = build_asset(scene, {}, watcher);
-    REQUIRE_FALSE(built);
-    CHECK(built.error().code == ErrorCode::Cancelled);
+  Random random(12);
+  std::vector<std::size_t> chosen = {1, 2, whole.calls};
+  while (chosen.size() < (kReduced ? 8 : 30)) chosen.push_back(1 + random.below(whole.calls));
+  for (const std::size_t call : chosen)
+    for (const std::size_t threads : {1, 3}) {
+      CAPTURE(call, whole.calls, threads);
+      Watcher watcher;
+      watcher.last_call = call;
+      with_threads(threads, [&] {
+        const auto built = build_asset(scene, {}, watcher);
+        REQUIRE_FALSE(built);
+        CHECK(built.error().code == ErrorCode::Cancelled);
+      });
+      CHECK(watcher.calls == call);
+    }
+}
+
+TEST_CASE("a build is heard of within a mesh: no stage but writing goes far between two calls") {
+  const Scene scene =
+      Scene::from_mesh({assemble(icosphere(kReduced ? 4 : 5, 0.02, 7))->mesh, {}, {}, {}, {}}, "ball").value();
+  Watcher watcher;
+  REQUIRE(build_asset(scene, {}, watcher));
+  for (const BuildStage stage : {BuildStage::Simplifying, BuildStage::MakingLevels, BuildStage::MeasuringLevels}) {
+    CAPTURE(static_cast<int>(stage));
+    const std::vector<double>& shares = watcher.said[stage];
+    double farthest = 0;
+    for (std::size_t i = 0; i + 1 < shares.size(); ++i) farthest = std::max(farthest, shares[i + 1] - shares[i]);
+    CHECK(farthest < 0.201);  // the whole mesh, one of five levels, takes that much at once
+    CHECK(shares.size() > 50);
   }
+}
+
+TEST_CASE("who listens to a build changes nothing in it") {
+  const Scene scene = ball_scene();
+  Watcher watcher;
+  const auto heard = build_asset(scene, {}, watcher), alone = build_asset(scene);
+  REQUIRE(heard);
+  REQUIRE(alone);
+  CHECK(heard->files[0].glb == alone->files[0].glb);
 }
 
 TEST_CASE("targets of any order are levels finest first, those of two kinds are refused") {

@@ -94,10 +94,17 @@ void report_plan(const Scene& scene, LevelPlan& plan, const std::vector<LeveledM
   result.grid_error = plan.grid_error;
 }
 
+// How the work of writing is shared out: the streams, and of each file the encoding.
+constexpr double kStreamsShare = 0.3;
+constexpr double kEncodingShare = 0.9;
+
 /// A mesh that is beyond the stream's limits goes without one; its levels do not need it.
-Result<void> encode_streams(const Scene& scene, std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes) {
+Result<void> encode_streams(const Scene& scene, std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes,
+                            const Progress& progress) {
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    Result<std::vector<std::byte>> stream = encode_stream(result.simplified[i].mesh);
+    StreamOptions options;
+    options.progress = progress.part(1 / static_cast<double>(levels.size()));
+    Result<std::vector<std::byte>> stream = encode_stream(result.simplified[i].mesh, options);
     if (!stream && stream.error().code != ErrorCode::LimitExceeded) return tl::unexpected(stream.error());
     if (!stream) {
       notes.add(text("mesh '", scene.meshes()[i].name, "' has no removal stream: ", stream.error().message));
@@ -126,9 +133,10 @@ void keep_levels(const std::vector<std::vector<AssetLevel>>& meshes, BuildResult
 /// Encodes the levels that a file holds, measures them as they come out of it, and writes it with their numbers.
 Result<void> make_file(const Scene& scene, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
                        const BuildOptions& options, const FileLevels& file, BuildResult& result, Notes& notes,
-                       BuildObserver& observer) {
+                       const Progress& progress, BuildObserver& observer) {
   Stopwatch stopwatch;
   AssetOptions storage = storage_of(scene, options);
+  storage.progress = progress.part(kEncodingShare);
   const bool is_one_level = options.layout == FileLayout::FilePerLevel;
   if (is_one_level && !storage.gltf_name.empty()) storage.gltf_name += text("_LOD", file.first);
   LODESTONE_TRY(EncodedGeometry geometry,
@@ -136,15 +144,13 @@ Result<void> make_file(const Scene& scene, const LevelPlan& plan, const std::vec
   result.timings_ms.write += stopwatch.lap_ms();
   LODESTONE_CHECK(measure_levels(scene, plan, options, file, geometry.levels(), result, observer));
   result.timings_ms.levels += stopwatch.lap_ms();
-  const double share = 1 / static_cast<double>(file.file_count), done = static_cast<double>(file.file);
-  if (!observer.progress(BuildStage::Writing, share * done)) return cancelled();
   if (options.keep_levels) keep_levels(geometry.levels(), result);
   LODESTONE_TRY(EncodedAsset asset, write_asset(std::move(geometry)));
   for (const std::string& note : asset.layout.notes) notes.add(note);
   report_layout(asset.layout, file.first, result);
   result.files.push_back(std::move(asset));
   result.timings_ms.write += stopwatch.lap_ms();
-  if (!observer.progress(BuildStage::Writing, share * (done + 1))) return cancelled();
+  if (!progress.reach(1)) return cancelled();
   return {};
 }
 
@@ -166,17 +172,23 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   result.timings_ms.simplify = stopwatch.lap_ms();
 
   SceneFitter fitter(scene, result.simplified, options);
-  LevelPlan plan = plan_levels(scene, result.simplified, options, fitter);
-  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(scene, result.simplified, plan, fitter, observer));
+  const Progress making = stage_progress(observer, BuildStage::MakingLevels);
+  LevelPlan plan = plan_levels(scene, result.simplified, options, fitter, making.part(0));
+  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(scene, result.simplified, plan, fitter, making));
   report_plan(scene, plan, levels, result);
   result.timings_ms.levels = stopwatch.lap_ms();
   if (options.strict && !result.met) return result;
 
-  if (writes_streams(options)) LODESTONE_CHECK(encode_streams(scene, levels, result, notes));
+  const Progress writing = stage_progress(observer, BuildStage::Writing);
+  if (writes_streams(options))
+    LODESTONE_CHECK(encode_streams(scene, levels, result, notes, writing.part(kStreamsShare)));
+  writing.reach(kStreamsShare);
   result.timings_ms.write = stopwatch.lap_ms();
   const std::size_t file_count = options.layout == FileLayout::FilePerLevel ? plan.level_count() : 1;
+  const double share = (1 - kStreamsShare) / static_cast<double>(file_count);
   for (std::size_t i = 0; i < file_count; ++i)
-    LODESTONE_CHECK(make_file(scene, plan, levels, options, {i, file_count, i}, result, notes, observer));
+    LODESTONE_CHECK(
+        make_file(scene, plan, levels, options, {i, file_count, i}, result, notes, writing.part(share), observer));
   return result;
 }
 

@@ -17,6 +17,7 @@ namespace {
 // Two digits for a table and a report, in a fraction of the time that `compare` takes for its four.
 constexpr double kSceneSamples = 50'000;           // Each way, for a level of all meshes together.
 constexpr double kSceneAttributeSamples = 20'000;  // The same for attributes.
+constexpr double kDistancesShare = 0.9;            // of the work; attributes are the rest
 constexpr double kLeastShare = 0.02;               // Of them for one mesh: its own numbers need some, too.
 
 /// How much of a scene's samples a mesh gets, by its faces: many small meshes cost little more than one large one.
@@ -26,8 +27,9 @@ double share_of_samples(const Scene& scene, const Mesh& mesh) {
   return std::max(static_cast<double>(mesh.face_count()) / static_cast<double>(all), kLeastShare);
 }
 
-DeviationOptions level_measure(double share = 1) {
+DeviationOptions level_measure(const Progress& progress, double share = 1) {
   DeviationOptions options;
+  options.progress = progress;
   options.sample_count = static_cast<std::size_t>(share * kSceneSamples);
   options.relative_tolerance = 0.01;
   return options;
@@ -44,13 +46,15 @@ struct MeasuredMesh {
   }
 };
 
-void measure_level(const Scene& scene, const MeasuredSurface& original, const Mesh& level,
+void measure_level(const Scene& scene, const MeasuredSurface& original, const Mesh& level, const Progress& progress,
                    BuildResult::MeshPart::Level& reported) {
   const Mesh& whole = original.mesh();
   reported.vertex_count = level.vertex_count();
   const double share = share_of_samples(scene, whole);
-  reported.deviation = measure_deviation(original, MeasuredSurface(level), level_measure(share));
-  reported.attributes = measure_attributes(whole, level, static_cast<std::size_t>(share * kSceneAttributeSamples));
+  reported.deviation =
+      measure_deviation(original, MeasuredSurface(level), level_measure(progress.part(kDistancesShare), share));
+  reported.attributes = measure_attributes(whole, level, static_cast<std::size_t>(share * kSceneAttributeSamples),
+                                           progress.part(1 - kDistancesShare));
 }
 
 /// Adds up what the meshes' levels deviate.
@@ -69,12 +73,13 @@ void total_level(const Scene& scene, std::size_t number, BuildResult& result) {
 
 }  // namespace
 
-bool lies_within(const Mesh& a, const Mesh& b, double limit) {
-  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure(), limit).maximum_bound() <= limit;
+bool lies_within(const Mesh& a, const Mesh& b, double limit, const Progress& progress) {
+  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure(progress), limit).maximum_bound() <=
+         limit;
 }
 
-double measured_maximum(const Mesh& a, const Mesh& b) {
-  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure()).maximum_bound();
+double measured_maximum(const Mesh& a, const Mesh& b, const Progress& progress) {
+  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure(progress)).maximum_bound();
 }
 
 Result<void> measure_levels(const Scene& scene, const LevelPlan& plan, const BuildOptions& options,
@@ -82,19 +87,21 @@ Result<void> measure_levels(const Scene& scene, const LevelPlan& plan, const Bui
                             BuildObserver& observer) {
   const std::size_t count = meshes.front().size();
   const auto files = static_cast<double>(file.file_count), number_of_file = static_cast<double>(file.file);
-  StageProgress progress(observer, BuildStage::MeasuringLevels, std::vector<double>(meshes.size() * count, 1),
-                         number_of_file / files, (number_of_file + 1) / files);
+  const Progress progress =
+      stage_progress(observer, BuildStage::MeasuringLevels, number_of_file / files, (number_of_file + 1) / files);
+  const double share = 1 / static_cast<double>(meshes.size() * count);
   std::vector<MeasuredMesh> originals(meshes.size());
   for_each_in_parallel(meshes.size() * count, [&](std::size_t i) {
     const std::size_t mesh = i / count, level = i % count, number = file.first + level;
     if (progress.is_cancelled()) return;
+    const Progress part = progress.part(share);
     const bool is_as_it_was = !options.storage.draco && is_whole(plan, result.simplified, mesh, number);
     if (!is_as_it_was && (level == 0 || !plan.repeats(mesh, number)))
-      measure_level(scene, originals[mesh].prepared(scene.meshes()[mesh].mesh), meshes[mesh][level].mesh,
+      measure_level(scene, originals[mesh].prepared(scene.meshes()[mesh].mesh), meshes[mesh][level].mesh, part,
                     result.meshes[mesh].levels[number]);
-    progress.update(i, 1);
+    part.reach(1);
   });
-  if (progress.is_cancelled()) return cancelled();
+  if (!progress.reach(1)) return cancelled();
   for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
     for (std::size_t level = 0; level < count; ++level) {
       const std::size_t number = file.first + level;

@@ -8,10 +8,10 @@
 namespace lodestone::detail {
 
 /// Whether the two surfaces are nowhere farther from each other than `limit`, in mesh units.
-bool lies_within(const Mesh& a, const Mesh& b, double limit);
+bool lies_within(const Mesh& a, const Mesh& b, double limit, const Progress& progress);
 
 /// Returns a bound on how far the two surfaces are from each other anywhere, in mesh units.
-double measured_maximum(const Mesh& a, const Mesh& b);
+double measured_maximum(const Mesh& a, const Mesh& b, const Progress& progress);
 
 /// Which of a plan's levels one of its files holds.
 struct FileLevels {

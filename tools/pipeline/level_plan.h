@@ -31,7 +31,7 @@ bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplifi
 /// Finds each mesh's positions: the whole scene, then what answers the targets. What would repeat the level before is
 /// left out.
 LevelPlan plan_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options,
-                      SceneFitter& fitter);
+                      SceneFitter& fitter, const Progress& progress);
 
 /// Sorts targets of one kind: finest first, by what they come to for the whole scene. Errors: InvalidArgument for
 /// several kinds.

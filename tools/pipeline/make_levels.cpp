@@ -17,6 +17,7 @@ struct LevelSource {
   const SimplifyResult& simplified;
   const SceneChoice& choice;
   std::size_t mesh = 0;
+  Progress progress;
 };
 
 /// Says in a level why it is no coarser.
@@ -33,30 +34,31 @@ AssetLevel make_level(const LevelSource& source, SceneFitter& fitter) {
   state_why(source.choice, source.mesh, level);
   level.mesh = extract_level(progressive, position);
   if (!fitter.fits(source.mesh) || position == progressive.record_count()) return level;
-  Mesh fitted = fitter.fitted(source.mesh, level.mesh);
+  Mesh fitted = fitter.fitted(source.mesh, level.mesh, source.progress);
   const double bound = static_cast<double>(progressive.deviation[position]);
   const bool is_limited = source.choice.target.kind == TargetKind::Error;
-  if (!is_limited || lies_within(source.whole.mesh, fitted, bound)) level.mesh = std::move(fitted);
+  if (!is_limited || lies_within(source.whole.mesh, fitted, bound, source.progress)) level.mesh = std::move(fitted);
   return level;
 }
 
 }  // namespace
 
 Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified,
-                                             const LevelPlan& plan, SceneFitter& fitter, BuildObserver& observer) {
+                                             const LevelPlan& plan, SceneFitter& fitter, const Progress& progress) {
   const std::size_t count = plan.level_count();
   std::vector<LeveledMesh> meshes(simplified.size());
   for (LeveledMesh& mesh : meshes) mesh.levels.resize(count);
-  StageProgress progress(observer, BuildStage::MakingLevels, std::vector<double>(meshes.size() * count, 1));
+  const double share = 1 / static_cast<double>(meshes.size() * count);
   for_each_in_parallel(meshes.size() * count, [&](std::size_t i) {
     const std::size_t mesh = i / count, level = i % count;
     if (progress.is_cancelled()) return;
+    const Progress part = progress.part(share);
     if (!plan.repeats(mesh, level))
       meshes[mesh].levels[level] =
-          make_level({scene.meshes()[mesh], simplified[mesh], plan.choices[level], mesh}, fitter);
-    progress.update(i, 1);
+          make_level({scene.meshes()[mesh], simplified[mesh], plan.choices[level], mesh, part}, fitter);
+    part.reach(1);
   });
-  if (progress.is_cancelled()) return cancelled();
+  if (!progress.reach(1)) return cancelled();
   for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
     for (std::size_t level = 1; level < count; ++level) {
       if (!plan.repeats(mesh, level)) continue;

@@ -10,12 +10,14 @@ bool SceneFitter::fits(std::size_t mesh) const {
   return options_.placement == Placement::Optimised && !whole.skinned && !whole.has_targets;
 }
 
-Mesh SceneFitter::fitted(std::size_t mesh, const Mesh& level) {
+Mesh SceneFitter::fitted(std::size_t mesh, const Mesh& level, const Progress& progress) {
   Slot& slot = slots_[mesh];
-  std::call_once(slot.once, [&] { slot.fitter = std::make_unique<LevelFitter>(scene_.meshes()[mesh].mesh); });
+  std::call_once(slot.once,
+                 [&] { slot.fitter = std::make_unique<LevelFitter>(scene_.meshes()[mesh].mesh, progress.part(0)); });
   PlacementOptions placement;
   placement.effort = options_.effort;
   placement.fixed = simplified_[mesh].locked;
+  placement.progress = progress;
   return slot.fitter->fit(level, placement);
 }
 

@@ -22,7 +22,7 @@ class SceneFitter {
   bool fits(std::size_t mesh) const;
 
   /// Returns a level of a mesh fitted to it, all but the vertices that the options kept.
-  Mesh fitted(std::size_t mesh, const Mesh& level);
+  Mesh fitted(std::size_t mesh, const Mesh& level, const Progress& progress);
 
  private:
   struct Slot {

@@ -49,12 +49,10 @@ Result<SimplifyOptions> options_for(const Scene& scene, const SceneMesh& mesh, c
 }
 
 Result<SimplifyResult> simplify_mesh(const Scene& scene, std::size_t mesh, const BuildOptions& build,
-                                     StageProgress& progress) {
+                                     const Progress& progress) {
   LODESTONE_TRY(SimplifyOptions options, options_for(scene, scene.meshes()[mesh], build));
-  options.progress = [&](double share) { return progress.update(mesh, share); };
-  Result<SimplifyResult> result = simplify(scene.meshes()[mesh].mesh, options);
-  progress.update(mesh, 1);
-  return result;
+  options.progress = progress;
+  return simplify(scene.meshes()[mesh].mesh, options);
 }
 
 }  // namespace
@@ -64,14 +62,15 @@ bool writes_streams(const BuildOptions& options) { return options.stream && opti
 Result<std::vector<SimplifyResult>> simplify_scene(const Scene& scene, const BuildOptions& options,
                                                    BuildObserver& observer) {
   const std::vector<SceneMesh>& meshes = scene.meshes();
-  std::vector<double> sizes;
-  for (const SceneMesh& mesh : meshes) sizes.push_back(static_cast<double>(mesh.mesh.face_count()));
-  StageProgress progress(observer, BuildStage::Simplifying, std::move(sizes));
+  double face_count = 0;
+  for (const SceneMesh& mesh : meshes) face_count += static_cast<double>(mesh.mesh.face_count());
+  const Progress progress = stage_progress(observer, BuildStage::Simplifying);
   std::vector<Result<SimplifyResult>> results(meshes.size());
   for_each_in_parallel(meshes.size(), [&](std::size_t i) {
-    if (!progress.is_cancelled()) results[i] = simplify_mesh(scene, i, options, progress);
+    const double share = static_cast<double>(meshes[i].mesh.face_count()) / face_count;
+    if (!progress.is_cancelled()) results[i] = simplify_mesh(scene, i, options, progress.part(share));
   });
-  if (progress.is_cancelled()) return cancelled();
+  if (!progress.reach(1)) return cancelled();
   std::vector<SimplifyResult> simplified;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (!results[i])

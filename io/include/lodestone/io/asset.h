@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/progress.h>
 #include <lodestone/core/result.h>
 #include <lodestone/lod/deviation.h>
 
@@ -52,6 +53,7 @@ struct AssetOptions {
   /// place of a .glb.
   std::string gltf_name;
   bool keep_decoded = false;  ///< keep the levels as clients will decode them: see `EncodedGeometry`
+  Progress progress;          ///< of the encoding; where it is cancelled that ends with the error Cancelled
 };
 
 /// What was written, for reports.

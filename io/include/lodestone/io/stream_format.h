@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <lodestone/core/progress.h>
 #include <lodestone/core/result.h>
 #include <lodestone/lod/progressive_mesh.h>
 
@@ -15,6 +16,7 @@ namespace lodestone {
 struct StreamOptions {
   int zstd_level = 9;                    ///< 1 to 19
   std::size_t records_per_chunk = 4096;  ///< a chunk ends at the round boundary after about this many
+  Progress progress;
 };
 
 /// One entry of a stream's directory.
@@ -39,7 +41,8 @@ struct StreamDirectory {
   std::vector<StreamChunk> chunks;  ///< chunk 0: the base mesh; the others in refinement order
 };
 
-/// Encodes a progressive mesh, losslessly. Deterministic for one zstd version.
+/// Encodes a progressive mesh, losslessly. Deterministic for one zstd version. Errors: InvalidArgument, LimitExceeded,
+/// Cancelled.
 Result<std::vector<std::byte>> encode_stream(const ProgressiveMesh& mesh, const StreamOptions& options = {});
 
 /// Reads header and directory; the chunks need not be there yet.

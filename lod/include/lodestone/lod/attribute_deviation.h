@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/progress.h>
 
 namespace lodestone {
 
@@ -20,8 +21,9 @@ struct AttributeDeviation {
 
 /// Compares the attributes that two meshes share (same name, width) at points spread over the original's faces with
 /// those at the nearest points of the level's faces of the same material. Joints and weights are left out: they have no
-/// meaning one by one. Deterministic. Cost: one nearest-point query for each of about `sample_count` points.
+/// meaning one by one. Deterministic. Cancelled, it ends with what it has seen. Cost: one nearest-point query for each
+/// of about `sample_count` points.
 std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const Mesh& level,
-                                                   std::size_t sample_count = 20'000);
+                                                   std::size_t sample_count = 20'000, const Progress& progress = {});
 
 }  // namespace lodestone

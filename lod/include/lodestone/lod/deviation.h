@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/progress.h>
 #include <lodestone/lod/surface_index.h>
 
 namespace lodestone {
@@ -35,6 +36,8 @@ struct DeviationOptions {
   double absolute_tolerance = 0;      ///< mesh units; 0: 1e-7 of the diagonal
   std::size_t budget =
       1'000'000;  ///< parts of faces to halve for narrowing the maximum, each way; about 100 bytes each
+  /// Cancelled, measuring ends: maximum_bound is one still, infinity at worst, and the rest says nothing.
+  Progress progress;
 };
 
 /// Returns the k-th of a sequence of points that spreads evenly over a face.

@@ -6,6 +6,7 @@
 
 #include <lodestone/core/effort.h>
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/progress.h>
 
 namespace lodestone {
 
@@ -15,6 +16,7 @@ struct PlacementOptions {
   /// One per vertex of the original, or empty: where it is not 0, what lies there stays, bit for bit, and so do the
   /// edges of faces between such vertices.
   std::vector<std::uint8_t> fixed;
+  Progress progress;  ///< cancelled, fitting ends with the level as it was given
 };
 
 /// Moves the vertices of a level to where its faces fit the original best, and turns edges where that fits better.
@@ -32,8 +34,9 @@ Mesh optimise_placement(const Mesh& original, const Mesh& level, const Placement
 /// The same for several levels of one mesh: makes what all of them need once. Levels may be fitted side by side.
 class LevelFitter {
  public:
-  /// `original` outlives it. Cost: O(n log n).
-  explicit LevelFitter(const Mesh& original);
+  /// `original` outlives it. Where `progress`, which hears and tells nothing, is cancelled, levels stay as they are
+  /// given. Cost: O(n log n).
+  explicit LevelFitter(const Mesh& original, const Progress& progress = {});
   ~LevelFitter();
   LevelFitter(LevelFitter&&) noexcept;
   LevelFitter& operator=(LevelFitter&&) noexcept;

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include <lodestone/core/effort.h>
+#include <lodestone/core/progress.h>
 
 namespace lodestone {
 
@@ -69,8 +69,8 @@ struct SimplifyOptions {
   /// Measure the deviation each time this share of the faces has gone. In between, and everywhere where it is 0, bounds
   /// add up what each removal may have moved: safe, but wider than the truth.
   double measure_step = 0.1;
-  /// Called between rounds with the share of the work done, 0 to 1; return false to cancel.
-  std::function<bool(double)> progress;
+  /// Cancelled, the run ends with what was removed so far: a mesh as good as any, its bounds perhaps wide.
+  Progress progress;
 };
 
 }  // namespace lodestone

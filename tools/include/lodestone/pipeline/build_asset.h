@@ -17,14 +17,15 @@
 
 namespace lodestone {
 
-/// The stages of a build. With a file for each level the last two take turns.
+/// The stages of a build. The last two take turns: what is measured is what was encoded.
 enum class BuildStage { Simplifying, MakingLevels, MeasuringLevels, Writing };
 
 /// Is told how a build goes on. Calls come from any thread, one at a time.
 class BuildObserver {
  public:
   virtual ~BuildObserver() = default;
-  /// Says how much of a stage is done, 0 to 1. Return false to cancel the build: it ends as soon as it can.
+  /// Says how much of a stage is done, 0 to 1, never less than before. Return false to cancel the build, which ends
+  /// within a tenth of a second, but for a mesh of millions of faces. About a thousand calls a second: be quick.
   virtual bool progress(BuildStage, double /*done*/) { return true; }
   /// Says what is otherwise than one would think, in one sentence.
   virtual void note(const std::string& /*sentence*/) {}
