@@ -196,7 +196,7 @@ class FaceIndex {
   /// Returns whether the face is new.
   bool add(const Key& key) {
     for (Index face = newest_[key[0]]; face != kNoIndex; face = older_[face])
-      if (faces_[face] == key) return false;
+      if (same(faces_[face], key)) return false;
     const auto candidate = static_cast<Index>(faces_.size());
     if (length_[key[0]] == kMostInList) return add_to_table(key);
     ++length_[key[0]];
@@ -208,11 +208,14 @@ class FaceIndex {
  private:
   static constexpr std::uint8_t kMostInList = 32;  // beyond, comparing them all costs too much
 
+  /// What == of arrays calls a function for.
+  static bool same(const Key& a, const Key& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2] && a[3] == b[3]; }
+
   bool add_to_table(const Key& key) {
     if (!table_) table_ = std::make_unique<HashIndex>(face_count_);
     const std::uint64_t hash = mix_bits(mix_bits(mix_bits(mix_bits(key[0]) + key[1]) + key[2]) + key[3]);
     const auto candidate = static_cast<Index>(faces_.size());
-    if (table_->find_or_insert(hash, candidate, [&](Index other) { return faces_[other] == key; }) != candidate)
+    if (table_->find_or_insert(hash, candidate, [&](Index other) { return same(faces_[other], key); }) != candidate)
       return false;
     faces_.push_back(key);
     older_.push_back(kNoIndex);

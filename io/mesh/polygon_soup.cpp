@@ -17,15 +17,20 @@ namespace {
 
 constexpr std::size_t kMostCompared = 16;  // points of a vertex: one that has more is of no use to compare them all
 
+Index element_of(const CornerAttribute& attribute, Index corner) {
+  return attribute.elements.empty() ? corner : attribute.elements[corner];
+}
+
 /// Makes points of corners: corners of one vertex share one where their attributes and their polygons' agree. That
 /// `assemble` would join them, too; but there are six times as many corners as vertices.
 class CornerJoiner {
  public:
   explicit CornerJoiner(const PolygonSoup& polygons)
       : polygons_(polygons), newest_(polygons.positions.size(), kNoIndex) {
-    for (const auto* attributes : {&polygons.vertex_attributes, &polygons.corner_attributes})
-      for (const Attribute& a : *attributes)
-        if (a.name == "NORMAL") (attributes == &polygons.vertex_attributes ? vertex_normals_ : corner_normals_) = &a;
+    for (const Attribute& a : polygons.vertex_attributes)
+      if (a.name == "NORMAL") vertex_normals_ = &a;
+    for (const CornerAttribute& a : polygons.corner_attributes)
+      if (a.values.name == "NORMAL") corner_normals_ = &a;
   }
 
   /// Returns a corner's point.
@@ -49,29 +54,30 @@ class CornerJoiner {
  private:
   static bool same_element(const Attribute& attribute, Index a, Index b) {
     const std::size_t bytes = attribute.element_bytes();
-    return std::memcmp(&attribute.data[a * bytes], &attribute.data[b * bytes], bytes) == 0;
+    return a == b || std::memcmp(&attribute.data[a * bytes], &attribute.data[b * bytes], bytes) == 0;
   }
 
   bool agree(Index point, Index corner, Index polygon) const {
-    const auto all_same = [](std::span<const Attribute> attributes, Index a, Index b) {
-      return std::all_of(attributes.begin(), attributes.end(),
-                         [&](const Attribute& attribute) { return same_element(attribute, a, b); });
+    const auto corners_agree = [&](const CornerAttribute& a) {
+      return same_element(a.values, element_of(a, corners_[point]), element_of(a, corner));
     };
-    return all_same(polygons_.corner_attributes, corners_[point], corner) &&
-           all_same(polygons_.face_attributes, faces_[point], polygon);
+    const auto polygons_agree = [&](const Attribute& a) { return same_element(a, faces_[point], polygon); };
+    return std::all_of(polygons_.corner_attributes.begin(), polygons_.corner_attributes.end(), corners_agree) &&
+           std::all_of(polygons_.face_attributes.begin(), polygons_.face_attributes.end(), polygons_agree);
   }
 
   /// A normal without a direction gets that of its own face.
   bool may_be_shared(Index corner) const {
-    const auto has = [](const Attribute* normals, Index element) {
-      return normals == nullptr || has_direction(Vec3(load<Vec3f>(normals->data, element * sizeof(Vec3f))));
+    const auto has = [](const Attribute& normals, Index element) {
+      return has_direction(Vec3(load<Vec3f>(normals.data, element * sizeof(Vec3f))));
     };
-    return has(corner_normals_, corner) && has(vertex_normals_, polygons_.corners[corner]);
+    return (corner_normals_ == nullptr || has(corner_normals_->values, element_of(*corner_normals_, corner))) &&
+           (vertex_normals_ == nullptr || has(*vertex_normals_, polygons_.corners[corner]));
   }
 
   const PolygonSoup& polygons_;
   const Attribute* vertex_normals_ = nullptr;
-  const Attribute* corner_normals_ = nullptr;
+  const CornerAttribute* corner_normals_ = nullptr;
   std::vector<Index> newest_;  ///< by vertex: its newest point that may be shared
   std::vector<Index> older_;   ///< by point: the next of its vertex
   std::vector<Index> corners_, faces_;
@@ -90,7 +96,12 @@ void add_points(const PolygonSoup& polygons, const SplitPolygons& split, Triangl
   const std::vector<Index> vertices = pick_entries(polygons.corners, joiner.corners());
   soup.positions = pick_entries(polygons.positions, vertices);
   append_picked(polygons.vertex_attributes, vertices, soup);
-  append_picked(polygons.corner_attributes, joiner.corners(), soup);
+  for (const CornerAttribute& a : polygons.corner_attributes) {
+    std::vector<Index> elements;
+    elements.reserve(joiner.corners().size());
+    for (const Index corner : joiner.corners()) elements.push_back(element_of(a, corner));
+    soup.attributes.push_back(pick_elements(a.values, elements));
+  }
   append_picked(polygons.face_attributes, joiner.polygons(), soup);
 }
 

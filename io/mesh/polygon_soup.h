@@ -7,6 +7,12 @@
 
 namespace lodestone::detail {
 
+/// An attribute of polygons' corners.
+struct CornerAttribute {
+  Attribute values;
+  std::vector<Index> elements;  ///< which of the values each corner has; empty: as many values as corners, in order
+};
+
 /// Polygons as a file gives them, with attributes of its vertices, of the polygons' corners and of whole polygons.
 struct PolygonSoup {
   std::vector<Vec3f> positions;
@@ -14,8 +20,8 @@ struct PolygonSoup {
   std::vector<Index> sizes;                  ///< of each polygon: its number of corners
   std::vector<Index> face_material;          ///< one per polygon, or empty
   std::vector<Attribute> vertex_attributes;  ///< one element per position
-  std::vector<Attribute> corner_attributes;  ///< one element per corner
-  std::vector<Attribute> face_attributes;    ///< one element per polygon
+  std::vector<CornerAttribute> corner_attributes;
+  std::vector<Attribute> face_attributes;  ///< one element per polygon
 };
 
 /// Splits the polygons into triangles. Where corners or polygons have attributes, points are made of corners: those of

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <map>
 #include <string>
 #include <utility>
@@ -80,7 +79,8 @@ class ObjReader {
   Result<Index> resolve(const ObjPiece::Relative& relative) {
     const ObjKind kind = relative.kind;
     const long long index = relative.index;
-    const auto count = static_cast<long long>(element_count(kind) + relative.element_count);
+    const std::size_t so_far = element_count(kind) + relative.element_count;
+    const auto count = static_cast<long long>(so_far);
     const std::size_t line = line_count_ + relative.line;
     if (index >= 0 || index < -count) {
       if (kind == kPosition)
@@ -186,13 +186,11 @@ class ObjReader {
 
   /// Corners that name no element have zeros.
   template <std::size_t N>
-  Attribute corner_attribute(const char* name, ObjKind kind, const std::vector<std::array<float, N>>& elements) const {
-    Attribute attribute{name, ComponentType::Float32, N, false, {}};
-    attribute.data.resize(corner_count() * sizeof elements[0]);
-    for (std::size_t corner = 0; corner < corner_count(); ++corner)
-      if (const Index element = corners_[kind][corner]; element != kNoIndex)
-        std::memcpy(&attribute.data[corner * sizeof elements[0]], &elements[element], sizeof elements[0]);
-    return attribute;
+  CornerAttribute corner_attribute(const char* name, ObjKind kind, std::vector<std::array<float, N>>& elements) {
+    std::vector<Index> numbers = std::move(corners_[kind]);
+    std::replace(numbers.begin(), numbers.end(), kNoIndex, static_cast<Index>(elements.size()));
+    elements.push_back({});
+    return {float_attribute(name, N, {elements[0].data(), N * elements.size()}), std::move(numbers)};
   }
 
   /// Vertices without a colour are white. Only where some vertex has an alpha do the others get one.

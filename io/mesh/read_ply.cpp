@@ -634,7 +634,7 @@ class PlyReader {
     if (!faces_.texcoords.empty()) {
       std::erase_if(polygons_.vertex_attributes, [](const Attribute& a) { return a.name == "TEXCOORD_0"; });
       faces_.texcoords.resize(2 * faces_.corners.size());
-      polygons_.corner_attributes.push_back(float_attribute("TEXCOORD_0", 2, faces_.texcoords));
+      polygons_.corner_attributes.push_back({float_attribute("TEXCOORD_0", 2, faces_.texcoords), {}});
       if (faces_.without_texcoords > 0)
         file_.notes.push_back(text(faces_.without_texcoords, " corners without texture coordinates got 0, 0"));
     }

@@ -71,7 +71,8 @@ Result<DracoOutput> encode_group(const LevelToEncode& level, const FacesOfMateri
 
 }  // namespace
 
-std::vector<EncodedLevel> encode_levels(std::span<const LevelToEncode> levels, const AssetOptions& options) {
+std::vector<EncodedLevel> encode_levels(std::span<const LevelToEncode> levels, const AssetOptions& options,
+                                        const Progress& progress) {
   std::vector<EncodedLevel> encoded(levels.size());
   for_each_in_parallel(levels.size(),
                        [&](std::size_t i) { encoded[i].groups = split_by_material(*levels[i].level->mesh); });
@@ -82,9 +83,11 @@ std::vector<EncodedLevel> encode_levels(std::span<const LevelToEncode> levels, c
     for (std::size_t group = 0; group < encoded[level].groups.size(); ++group) jobs.emplace_back(level, group);
   }
   for_each_in_parallel(jobs.size(), [&](std::size_t i) {
+    if (progress.is_cancelled()) return;
     const auto [level, group] = jobs[i];
     encoded[level].outputs[group] =
         encode_group(levels[level], encoded[level].groups[group], options.draco_compression_level);
+    progress.add(1 / static_cast<double>(jobs.size()));
   });
   return encoded;
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include <lodestone/core/progress.h>
 #include <lodestone/io/asset.h>
 
 #include "gltf/draco_encode.h"
@@ -19,7 +20,8 @@ struct LevelToEncode {
 };
 
 /// Splits levels by material and, with Draco, encodes what each has of a material, all side by side. Nothing that Draco
-/// refuses is an error here: it is in the outputs.
-std::vector<EncodedLevel> encode_levels(std::span<const LevelToEncode> levels, const AssetOptions& options);
+/// refuses is an error here: it is in the outputs. Where the work is cancelled they are of no use.
+std::vector<EncodedLevel> encode_levels(std::span<const LevelToEncode> levels, const AssetOptions& options,
+                                        const Progress& progress);
 
 }  // namespace lodestone::detail

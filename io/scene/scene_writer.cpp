@@ -37,6 +37,8 @@ using namespace detail;
 constexpr int kMaxQuantizationBits = 30;  // Draco's limit
 constexpr int kMinNormalBits = 2;
 
+constexpr double kEncodingShare = .9;  // of the time that a level takes to be encoded and described
+
 // Of a grid's step: floats hold all that Draco computes from it.
 constexpr float kLeastStep = 1e-30F, kMostStep = 1e28F;
 
@@ -170,7 +172,7 @@ class SceneWriter {
       }
     }
     LODESTONE_TRY(grids_, fit_grids(scene_, geometry_, options_));
-    encode_levels_side_by_side();
+    LODESTONE_CHECK(encode_levels_side_by_side());
     for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh) {
       const QuantizationGrid& grid = grids_[mesh].position;
       layout_.quantisation_error =
@@ -180,7 +182,7 @@ class SceneWriter {
     return {};
   }
 
-  void encode_levels_side_by_side() {
+  Result<void> encode_levels_side_by_side() {
     std::vector<LevelToEncode> levels;
     std::vector<EncodedLevel*> to;
     encoded_.assign(meshes_.size(), std::vector<EncodedLevel>(range_.count));
@@ -190,8 +192,11 @@ class SceneWriter {
         levels.push_back({&impl_.sources[mesh], &geometry_[mesh][level], &grids_[mesh]});
         to.push_back(&encoded_[mesh][level]);
       }
-    std::vector<EncodedLevel> encoded = encode_levels(levels, options_);
+    const Progress progress = options_.progress.part(kEncodingShare);
+    std::vector<EncodedLevel> encoded = encode_levels(levels, options_, progress);
+    if (!progress.reach(1)) return fail(ErrorCode::Cancelled, "cancelled");
     for (std::size_t i = 0; i < to.size(); ++i) *to[i] = std::move(encoded[i]);
+    return {};
   }
 
   /// The finest level keeps what it has: it shares no data that are mended.
@@ -214,7 +219,7 @@ class SceneWriter {
         encoded_[mesh][level] = {};
         for (const std::string& note : written.notes) add_note(note);
       }
-      if (!options_.progress.add(1 / static_cast<double>(range_.count * meshes_.size())))
+      if (!options_.progress.add((1 - kEncodingShare) / static_cast<double>(range_.count * meshes_.size())))
         return fail(ErrorCode::Cancelled, "cancelled");
       layout.geometry_bytes += written.byte_count;
       collapsed_[level] += written.collapsed_face_count * scene_.meshes()[mesh].instance_count;

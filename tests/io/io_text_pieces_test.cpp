@@ -54,7 +54,7 @@ std::string read(Reader reader, const std::string& source, std::size_t piece_byt
 
 /// Reads a text whole and in pieces of every small size; returns what all of them made of it.
 std::string read_everyhow(Reader reader, const std::string& source) {
-  const std::string whole = read(reader, source, kWhole);
+  std::string whole = read(reader, source, kWhole);
   INFO(source.substr(0, 2000));
   for (const std::size_t piece_bytes : {1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233}) {
     INFO("in pieces of " << piece_bytes << " bytes");
@@ -194,12 +194,13 @@ TEST_CASE("obj: errors name their line, whatever piece it is in") {
   for (std::size_t at = 0; at != source.npos; at = source.find('\n', at + 1)) {
     if (at > 0 && source[at - 1] == '\\') continue;
     const std::string before = at == 0 ? "" : source.substr(0, at + 1), after = source.substr(before.size());
-    const std::string line = "line " + std::to_string(line_count(before) + 1) + ": ";
-    CHECK(read_everyhow(detail::read_obj, before + "v 1 2 x\n" + after) == "error 2: " + line + "'x' is not a number");
-    CHECK(read_everyhow(detail::read_obj, before + "f 1 2 -99\nv oh\n" + after)
-              .starts_with("error 2: " + line + "vertex index -99 is out of range: there are "));
-    CHECK(read_everyhow(detail::read_obj, before + "f 1 2 90\nf 1 2 90\n" + after) ==
-          "error 2: " + line + "vertex index 90 is out of range: the file has 40");
+    const std::string line = "error 2: line " + std::to_string(line_count(before) + 1) + ": ";
+    const auto read_with = [&](const std::string& statements) {
+      return read_everyhow(detail::read_obj, std::string(before).append(statements).append(after));
+    };
+    CHECK(read_with("v 1 2 x\n") == line + "'x' is not a number");
+    CHECK(read_with("f 1 2 -99\nv oh\n").starts_with(line + "vertex index -99 is out of range: there are "));
+    CHECK(read_with("f 1 2 90\nf 1 2 90\n") == line + "vertex index 90 is out of range: the file has 40");
   }
 }
 
