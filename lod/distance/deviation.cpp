@@ -23,6 +23,7 @@
 #include <lodestone/core/detail/edges.h>
 
 #include "distance/coincident_faces.h"
+#include "distance/morton_curve.h"
 #include "distance/supremum.h"
 #include "distance/triangle.h"
 
@@ -202,21 +203,18 @@ class Tally {
   /// Looks up the samples, those of neighbouring faces together, and adds up what is found; stops where the work is
   /// cancelled.
   void finish(ProgressSteps& steps) {
-    const std::span<const Index> ranks = from_.index.ranks();
-    std::vector<std::uint64_t> order(count());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint64_t{ranks[on_faces_[i]]} << 32 | i;
-    std::sort(order.begin(), order.end());
+    const std::vector<Index> order = compact_order();
     std::vector<Vec3> points;
     std::vector<SurfaceIndex::Hit> hits;
     for (std::size_t first = 0; first < order.size(); first += points.size()) {
       points.clear();
       for (std::size_t i = first; i < std::min(first + kSamplesOfStep, order.size()); ++i)
-        points.push_back(points_[static_cast<Index>(order[i])]);
+        points.push_back(points_[order[i]]);
       hits.assign(points.size(), {0, {}, kNoIndex, 0});
       to_.index.nearest(points, hits);
       for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!steps.next()) return;
-        add(hits[i], on_faces_[static_cast<Index>(order[first + i])]);
+        add(hits[i], on_faces_[order[first + i]]);
       }
     }
   }
@@ -231,6 +229,18 @@ class Tally {
     sum_ += hit.distance;
     squares_ += hit.distance * hit.distance;
     if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_.mesh, face), to_faces_->as_near_as(hit));
+  }
+  /// The samples by their faces, such that those of neighbours are near each other, and those of a face along a curve.
+  std::vector<Index> compact_order() const {
+    const std::span<const Index> ranks = from_.index.ranks();
+    const detail::MortonCurve curve(bounding_box(from_.mesh));
+    std::vector<std::pair<std::uint64_t, Index>> keys(count());
+    for (Index i = 0; i < keys.size(); ++i)
+      keys[i] = {std::uint64_t{ranks[on_faces_[i]]} << 32 | curve.code(points_[i]) >> 31, i};
+    std::sort(keys.begin(), keys.end());
+    std::vector<Index> order;
+    for (const auto& [key, sample] : keys) order.push_back(sample);
+    return order;
   }
   double least_angle(const Vec3& normal, std::span<const Index> faces) const {
     double least = std::numbers::pi;

@@ -36,9 +36,11 @@ using detail::PointSpread;
 using detail::Triangle;
 
 constexpr std::size_t kWidth = detail::kRunWidth;
-constexpr double kBoxSlack = 1e-6;      // Of the largest coordinate in a node: more than rounding does there.
-constexpr double kFarSlack = 1 + 1e-5;  // Relative, of squared distances: the same for points far outside a node.
-constexpr double kFarthest = 1e15;      // Points farther away are pulled in, for boxes: squares of floats are finite.
+constexpr double kBoxSlack = 1e-6;       // Of the largest coordinate in a node: more than single precision loses there.
+constexpr double kFarSlack = 1 + 1e-12;  // Relative, of squared distances: for points far outside a node.
+constexpr double kSingleSlack = 1e-5;    // The same where they are computed in single precision.
+constexpr double kFarthest = 1e15;       // Points farther away are pulled in, for that: squares of floats are finite.
+constexpr double kTogether = 8;          // How far apart points searched for at once may lie, in sizes of a face.
 constexpr std::size_t kMostLevels = 17;
 constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each level.
 
@@ -54,30 +56,21 @@ using Local = std::array<double, 3>;
 /// Coordinates relative to an origin, along axes and in units of their own.
 struct Frame {
   Vec3f origin;
-  std::array<Vec3, 3> axes;
-  double scale = 1;  // What lengths are multiplied by.
+  std::array<Vec3, 3> axes;  // The mesh's, in local coordinates.
 
   Local local(const Vec3& p) const {
-    const Vec3 d = (p - Vec3(origin)) * scale;
-    return {dot(axes[0], d), dot(axes[1], d), dot(axes[2], d)};
+    const Vec3 d = p - Vec3(origin);
+    const Vec3 q = axes[0] * d.x + axes[1] * d.y + axes[2] * d.z;
+    return {q.x, q.y, q.z};
   }
 };
 
 /// The boxes of four children, transposed for arithmetic on four lanes.
-struct alignas(32) Node {
-  float axes[3][3];  // In local coordinates, by the mesh's.
+struct alignas(64) Node {
+  Frame frame;
   float centre[3][kWidth];
   float half[3][kWidth];
-  Vec3f origin;
 
-  void set_frame(const Frame& frame) {
-    origin = frame.origin;
-    for (std::size_t i = 0; i < 3; ++i) {
-      axes[0][i] = static_cast<float>(frame.axes[i].x);
-      axes[1][i] = static_cast<float>(frame.axes[i].y);
-      axes[2][i] = static_cast<float>(frame.axes[i].z);
-    }
-  }
   void set(std::size_t child, const CentredBox& box) {
     for (int axis = 0; axis < 3; ++axis) {
       centre[axis][child] = static_cast<float>(box.centre[axis]);
@@ -88,30 +81,20 @@ struct alignas(32) Node {
 
 /// Twice how far `x` lies outside an interval. The sum of t and |t| needs no comparison, which the compiler would not
 /// turn into lanes.
-inline float twice_outside(float centre, float half, float x) {
-  const float t = std::fabs(x - centre) - half;
+template <class Real>
+Real twice_outside(float centre, float half, Real x) {
+  const Real t = std::fabs(x - static_cast<Real>(centre)) - static_cast<Real>(half);
   return t + std::fabs(t);
 }
 
-/// How far `p` lies from a node's origin, in units of the tree.
-inline float offset(double p, float origin, double scale) {
-  return static_cast<float>((p - static_cast<double>(origin)) * scale);
-}
-
 /// Four times the squared distances of a point to the boxes of a node.
-inline std::array<float, kWidth> box_distances(const Node& node, const Vec3& p, double scale) {
-  const float x = offset(p.x, node.origin.x, scale);
-  const float y = offset(p.y, node.origin.y, scale);
-  const float z = offset(p.z, node.origin.z, scale);
-  std::array<float, 3> local;
-  for (int axis = 0; axis < 3; ++axis)
-    local[axis] = node.axes[0][axis] * x + node.axes[1][axis] * y + node.axes[2][axis] * z;
-  std::array<float, kWidth> result;
+std::array<double, kWidth> box_distances(const Node& node, const Local& p) {
+  std::array<double, kWidth> result;
   for (std::size_t i = 0; i < kWidth; ++i) {
-    const float u = twice_outside(node.centre[0][i], node.half[0][i], local[0]);
-    const float v = twice_outside(node.centre[1][i], node.half[1][i], local[1]);
-    const float w = twice_outside(node.centre[2][i], node.half[2][i], local[2]);
-    result[i] = u * u + v * v + w * w;
+    const double x = twice_outside(node.centre[0][i], node.half[0][i], p[0]);
+    const double y = twice_outside(node.centre[1][i], node.half[1][i], p[1]);
+    const double z = twice_outside(node.centre[2][i], node.half[2][i], p[2]);
+    result[i] = x * x + y * y + z * z;
   }
   return result;
 }
@@ -198,6 +181,12 @@ Vec3 point(const Local& p) { return {p[0], p[1], p[2]}; }
 
 Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 
+/// `axes` in the mesh's coordinates; `scale` is what lengths are multiplied by.
+Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes, double scale) {
+  const Vec3 u = axes[0] * scale, v = axes[1] * scale, w = axes[2] * scale;
+  return {origin, {Vec3{u.x, v.x, w.x}, Vec3{u.y, v.y, w.y}, Vec3{u.z, v.z, w.z}}};
+}
+
 }  // namespace
 
 struct SurfaceIndex::Impl {
@@ -212,7 +201,7 @@ struct SurfaceIndex::Impl {
 
   void set_scale(const Mesh& mesh);
   Vec3 cut_off(const Vec3& p) const;
-  float reach(double squared) const;
+  double reach(double squared) const;
   void order_faces(const Mesh& mesh);
   std::vector<Index> find_distinct(std::span<const Triangle> all);
   void build_nodes();
@@ -229,7 +218,7 @@ namespace {
 class Search {
  public:
   Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit, std::vector<Index>* all = nullptr)
-      : tree_(tree), p_(p), far_(tree.cut_off(p)), best_squared_(limit * limit), all_(all) {
+      : tree_(tree), p_(p), best_squared_(limit * limit), all_(all) {
     hit_.distance = std::numeric_limits<double>::infinity();
     update_reach();
   }
@@ -272,7 +261,7 @@ class Search {
   }
 
   struct Item {
-    float distance;       // Four times the squared distance of the box.
+    double distance;      // Four times the squared distance of the box.
     std::uint32_t level;  // Of the node, from 1 on.
     Index place;          // On its level.
   };
@@ -281,7 +270,7 @@ class Search {
     ++hit_.visits;
     const std::uint32_t level = item.level - 1;
     const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
-    const std::array<float, kWidth> distances = box_distances(node, far_, tree_.scale);
+    const std::array<double, kWidth> distances = box_distances(node, node.frame.local(p_));
     const std::size_t base = size_;
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       if (!(distances[i] <= reach_)) continue;
@@ -302,10 +291,9 @@ class Search {
 
   const SurfaceIndex::Impl& tree_;
   Vec3 p_;
-  Vec3 far_;  // For boxes.
   double best_squared_;
   std::vector<Index>* all_;
-  float reach_ = 0;
+  double reach_ = 0;
   SurfaceIndex::Hit hit_;
   std::size_t size_ = 0;
   std::array<Item, kStackSize> stack_;
@@ -320,8 +308,8 @@ class PacketSearch {
 
   explicit PacketSearch(const SurfaceIndex::Impl& tree) : tree_(tree) {
     best_squared_.fill(std::numeric_limits<double>::infinity());
-    reach_.fill(std::numeric_limits<float>::max());
     face_.fill(kNoIndex);
+    for (std::size_t i = 0; i < kPoints; ++i) set_reach(i);
   }
 
   /// Adds one of at most kPoints points; `place` is a triangle that is likely near it, or kNoIndex.
@@ -337,7 +325,7 @@ class PacketSearch {
     push(root, 0);
     while (size_ > 0) {
       const Item item = stack_[--size_];
-      const Mask mask = within_reach(item.distances);
+      const Mask mask = no_farther(item.distances, within_);
       if (mask != 0) open(item, mask);
     }
   }
@@ -353,7 +341,14 @@ class PacketSearch {
     best_squared_[i] = squared;
     nearest_[i] = q;
     face_[i] = face;
-    reach_[i] = tree_.reach(squared);
+    set_reach(i);
+  }
+
+  void set_reach(std::size_t i) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    reach_[i] = std::min(tree_.reach(best_squared_[i]), kMost / (1 + kSingleSlack));
+    within_[i] = static_cast<float>(reach_[i] * (1 + kSingleSlack));
+    surely_within_[i] = static_cast<float>(reach_[i] * (1 - kSingleSlack));
   }
 
   using Lanes = std::array<float, kPoints>;
@@ -363,9 +358,10 @@ class PacketSearch {
     Index place;          // On its level.
   };
 
-  Mask within_reach(const Lanes& distances) const {
+  /// Which points have `distances` of at most that.
+  Mask no_farther(const Lanes& distances, const Lanes& than) const {
     std::array<Mask, kPoints> bits;
-    for (std::size_t i = 0; i < kPoints; ++i) bits[i] = distances[i] <= reach_[i] ? Mask{1} << i : 0;
+    for (std::size_t i = 0; i < kPoints; ++i) bits[i] = distances[i] <= than[i] ? Mask{1} << i : 0;
     Mask mask = 0;
     for (const Mask bit : bits) mask |= bit;
     return mask & ((Mask{1} << count_) - 1);
@@ -374,14 +370,19 @@ class PacketSearch {
   void open(const Item& item, Mask mask) {
     const std::uint32_t level = item.level - 1;
     const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
+    std::array<std::array<double, kPoints>, 3> local;
     Lanes u, v, w;
     for (std::size_t i = 0; i < kPoints; ++i) {
-      const float x = offset(x_[i], node.origin.x, tree_.scale);
-      const float y = offset(y_[i], node.origin.y, tree_.scale);
-      const float z = offset(z_[i], node.origin.z, tree_.scale);
-      u[i] = node.axes[0][0] * x + node.axes[1][0] * y + node.axes[2][0] * z;
-      v[i] = node.axes[0][1] * x + node.axes[1][1] * y + node.axes[2][1] * z;
-      w[i] = node.axes[0][2] * x + node.axes[1][2] * y + node.axes[2][2] * z;
+      const double x = x_[i] - static_cast<double>(node.frame.origin.x);
+      const double y = y_[i] - static_cast<double>(node.frame.origin.y);
+      const double z = z_[i] - static_cast<double>(node.frame.origin.z);
+      const std::array<Vec3, 3>& axes = node.frame.axes;
+      local[0][i] = axes[0].x * x + axes[1].x * y + axes[2].x * z;
+      local[1][i] = axes[0].y * x + axes[1].y * y + axes[2].y * z;
+      local[2][i] = axes[0].z * x + axes[1].z * y + axes[2].z * z;
+      u[i] = static_cast<float>(local[0][i]);
+      v[i] = static_cast<float>(local[1][i]);
+      w[i] = static_cast<float>(local[2][i]);
     }
     const std::size_t base = size_;
     for (std::uint32_t child = 0; child < kWidth; ++child) {
@@ -392,13 +393,16 @@ class PacketSearch {
         const float c = twice_outside(node.centre[2][child], node.half[2][child], w[i]);
         below.distances[i] = a * a + b * b + c * c;
       }
-      Mask wanted = within_reach(below.distances) & mask;
+      Mask wanted = no_farther(below.distances, within_) & mask;
       if (wanted == 0) continue;
-      if (level > 0) {
-        push(below, base);
-        continue;
+      for (Mask open = wanted & ~no_farther(below.distances, surely_within_); open != 0; open &= open - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(open));
+        const double there = box_distances(node, {local[0][i], local[1][i], local[2][i]})[child];
+        if (!(there <= reach_[i])) wanted &= ~(Mask{1} << i);
       }
-      for (; wanted != 0; wanted &= wanted - 1) test(static_cast<std::size_t>(std::countr_zero(wanted)), below.place);
+      if (wanted != 0 && level > 0) push(below, base);
+      for (; wanted != 0 && level == 0; wanted &= wanted - 1)
+        test(static_cast<std::size_t>(std::countr_zero(wanted)), below.place);
     }
   }
 
@@ -415,7 +419,8 @@ class PacketSearch {
   std::array<Vec3, kPoints> points_;
   std::array<double, kPoints> x_, y_, z_;  // For boxes.
   std::array<double, kPoints> best_squared_;
-  Lanes reach_;
+  std::array<double, kPoints> reach_;
+  Lanes within_, surely_within_;  // The reach in single precision, from above and from below.
   std::array<Vec3, kPoints> nearest_;
   std::array<Index, kPoints> face_;
   std::size_t size_ = 0;
@@ -441,9 +446,8 @@ Vec3 SurfaceIndex::Impl::cut_off(const Vec3& p) const {
 
 /// What four times the squared distances of boxes are compared with, where triangles are wanted that are no farther
 /// than a distance, given by its square. Finite, so that boxes that contain nothing stay out of it.
-float SurfaceIndex::Impl::reach(double squared) const {
-  const double scaled = 4 * squared * scale * scale * kFarSlack;
-  return static_cast<float>(std::min(scaled, static_cast<double>(std::numeric_limits<float>::max())));
+double SurfaceIndex::Impl::reach(double squared) const {
+  return std::min(4 * squared * scale * scale * kFarSlack, std::numeric_limits<double>::max());
 }
 
 void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
@@ -517,24 +521,23 @@ void SurfaceIndex::Impl::add_level(std::size_t child_size, std::size_t child_cou
 /// Makes the node of the triangles from `begin` on, along those axes that leave the smaller boxes.
 Node SurfaceIndex::Impl::make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children,
                                    const Run& all) const {
+  Node node;
   const Vec3f origin = rounded(all.spread.mean);
-  Frame frame{origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale};
+  node.frame = make_frame(origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale);
   ChildExtents extents;
   for (std::size_t i = 0; i < children.size(); ++i) {
-    extents[i].add(frame.local(point(children[i].box.low)));
-    extents[i].add(frame.local(point(children[i].box.high)));
+    extents[i].add(node.frame.local(point(children[i].box.low)));
+    extents[i].add(node.frame.local(point(children[i].box.high)));
   }
-  const Frame turned{origin, all.spread.principal_axes(), scale};
+  const Frame turned = make_frame(origin, all.spread.principal_axes(), scale);
   const ChildExtents turned_extents = child_extents(turned, begin, child_size);
   if (half_area(turned_extents) < half_area(extents)) {
-    frame = turned;
+    node.frame = turned;
     extents = turned_extents;
   }
   double largest = 0;
   for (const Extent& extent : extents) largest = std::max(largest, extent.largest_coordinate());
   const double slack = kBoxSlack * largest + static_cast<double>(std::numeric_limits<float>::min());
-  Node node;
-  node.set_frame(frame);
   for (std::size_t i = 0; i < kWidth; ++i) node.set(i, extents[i].centred(slack));
   return node;
 }
@@ -573,21 +576,43 @@ SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
   return search.result();
 }
 
+namespace {
+
+/// Searches for at most PacketSearch::kPoints points: at once where they lie within `together` of the first, since what
+/// is the best way through the tree for one is so for all then; else one by one. The faces of hits are hints on entry.
+void search_packet(const SurfaceIndex::Impl& tree, std::span<const Vec3> points, std::span<SurfaceIndex::Hit> hits,
+                   double together) {
+  const auto place_of = [&](Index face) { return face != kNoIndex ? tree.places[face] : kNoIndex; };
+  const auto is_far = [&](const Vec3& p) { return !(length(p - points.front()) <= together); };
+  if (std::any_of(points.begin(), points.end(), is_far)) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Search search(tree, points[i], std::numeric_limits<double>::infinity());
+      if (hits[i].face != kNoIndex) search.test(place_of(hits[i].face));
+      search.descend();
+      hits[i] = search.result();
+    }
+    return;
+  }
+  PacketSearch search(tree);
+  for (std::size_t i = 0; i < points.size(); ++i) search.add(points[i], place_of(hits[i].face));
+  search.descend();
+  for (std::size_t i = 0; i < points.size(); ++i) hits[i] = search.result(i);
+}
+
+}  // namespace
+
 [[gnu::flatten]] LODESTONE_WIDE_VECTORS void SurfaceIndex::nearest(std::span<const Vec3> points,
                                                                    std::span<Hit> hits) const {
   assert(points.size() == hits.size());
   if (empty()) std::fill(hits.begin(), hits.end(), Hit{std::numeric_limits<double>::infinity(), {}, kNoIndex, 0});
   if (empty()) return;
+  const double together = kTogether * impl_->box.diagonal() / std::sqrt(static_cast<double>(impl_->places.size()));
   Index last = kNoIndex;
   for (std::size_t first = 0; first < points.size(); first += PacketSearch::kPoints) {
     const auto packet = hits.subspan(first, std::min(PacketSearch::kPoints, points.size() - first));
-    PacketSearch search(*impl_);
-    for (std::size_t i = 0; i < packet.size(); ++i) {
-      const Index hint = packet[i].face != kNoIndex ? packet[i].face : last;
-      search.add(points[first + i], hint != kNoIndex ? impl_->places[hint] : kNoIndex);
-    }
-    search.descend();
-    for (std::size_t i = 0; i < packet.size(); ++i) packet[i] = search.result(i);
+    for (Hit& hit : packet)
+      if (hit.face == kNoIndex) hit.face = last;
+    search_packet(*impl_, points.subspan(first, packet.size()), packet, together);
     last = packet.back().face;
   }
 }

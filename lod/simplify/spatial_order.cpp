@@ -1,5 +1,3 @@
-// Morton: A computer oriented geodetic data base and a new technique in file sequencing (IBM, 1966).
-
 #include "simplify/spatial_order.h"
 
 #include <algorithm>
@@ -7,35 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "distance/morton_curve.h"
+
 namespace lodestone::detail {
 namespace {
-
-/// Spreads the low 21 bits of `x` to every third bit.
-std::uint64_t spread_bits(std::uint64_t x) {
-  x = (x | x << 32) & 0x1f00000000ffffULL;
-  x = (x | x << 16) & 0x1f0000ff0000ffULL;
-  x = (x | x << 8) & 0x100f00f00f00f00fULL;
-  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
-  return (x | x << 2) & 0x1249249249249249ULL;
-}
-
-class MortonCurve {
- public:
-  explicit MortonCurve(const Box& box) : low_(box.low) {
-    const Vec3 extent = box.high - box.low;
-    const double largest = std::max({extent.x, extent.y, extent.z});
-    scale_ = largest > 0 ? 2097151.0 / largest : 0;
-  }
-  std::uint64_t code(const Vec3& p) const {
-    const auto cell = [&](double v) { return static_cast<std::uint64_t>(std::clamp(v * scale_, 0.0, 2097151.0)); };
-    const Vec3 d = p - low_;
-    return spread_bits(cell(d.x)) | spread_bits(cell(d.y)) << 1 | spread_bits(cell(d.z)) << 2;
-  }
-
- private:
-  Vec3 low_;
-  double scale_;
-};
 
 using Coded = std::pair<std::uint64_t, Index>;  // ties go to the lower number
 
