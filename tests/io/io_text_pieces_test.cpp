@@ -16,6 +16,7 @@
 #include "base/number_text.h"
 #include "mesh/soup_file.h"
 #include "support/catch.h"
+#include "support/data.h"
 #include "support/random.h"
 
 namespace lodestone::test {
@@ -193,6 +194,7 @@ TEST_CASE("obj: errors name their line, whatever piece it is in") {
   const auto line_count = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
   for (std::size_t at = 0; at != source.npos; at = source.find('\n', at + 1)) {
     if (at > 0 && source[at - 1] == '\\') continue;
+    if (kReduced && at % 5 != 0) continue;
     const std::string before = at == 0 ? "" : source.substr(0, at + 1), after = source.substr(before.size());
     const std::string line = "error 2: line " + std::to_string(line_count(before) + 1) + ": ";
     const auto read_with = [&](const std::string& statements) {
