@@ -181,7 +181,7 @@ Result<std::vector<CompactChunk>> read_compact_chunks(std::span<const std::byte>
 }
 
 Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) {
-  const auto in_stream = [](Error error, std::uint64_t offset) {
+  const auto in_stream = [](const Error& error, std::uint64_t offset) {
     return fail(error.code, "compact stream: " + error.message, error.byte_offset.value_or(offset));
   };
   const auto header = read_compact_header(bytes);
