@@ -140,8 +140,8 @@ int run(int argc, char** argv) {
   CLI::App app("Bits of compact streams beside Draco");
   app.add_option("files", options.files, "meshes, by themselves or in the folder of models");
   app.add_option("--data", options.data, "folder of models");
-  app.add_option("--bits", options.bits, "bits of positions")->delimiter(',');
-  app.add_option("--rounds", options.rounds, "SimplifyOptions::dense_rounds")->delimiter(',');
+  app.add_option("--bits", options.bits, "bits of positions")->delimiter(',')->allow_extra_args(false);
+  app.add_option("--rounds", options.rounds, "SimplifyOptions::dense_rounds")->delimiter(',')->allow_extra_args(false);
   app.add_flag("--curve", options.curve, "what each chunk leads to");
   CLI11_PARSE(app, argc, argv);
 

@@ -98,11 +98,11 @@ class CompactEncoder {
   Result<void> write_base();
   void find_first_slots();
   Index take_round(Index first);
-  bool is_ready(Index record, Index round_first) const;
+  bool is_ready(Index record, Index round_first);
   Result<void> write_round(Index first, Index end);
   Result<void> plan_round(Index first, Index end, PatchPlan& plan);
   Result<void> plan_ear(Index record, PatchPlan& plan);
-  Index find_border(Index from, Index to) const;
+  Index find_border(Index from, Index to);
   Index closing_edge(Index record) const;
   Result<std::vector<Vec3i>> number_round(const PatchPlan& plan, std::size_t count);
   bool number_star(Index record, std::size_t i);
@@ -127,8 +127,10 @@ class CompactEncoder {
   std::vector<Index> made_in_;                // by slot: the round that wrote it last
   std::vector<Index> first_slot_;             // by record: of the faces it appends
   Index round_ = 0;
-  std::vector<Index> patch_records_;              // of the round at hand: by planned patch
-  std::unordered_map<Index, Index> ear_records_;  // by half-edge
+  std::vector<Index> patch_records_;                  // of the round at hand: by planned patch
+  std::unordered_map<Index, Index> ear_records_;      // by half-edge
+  std::unordered_map<std::uint64_t, Index> borders_;  // of the level before a round: half-edges by their ends
+  Index borders_of_ = 0;                              // which round's
 };
 
 Vec3i CompactEncoder::grid_position(Index wedge) const {
@@ -204,7 +206,7 @@ void CompactEncoder::find_first_slots() {
 }
 
 /// Whether what a record needs was there before the round.
-bool CompactEncoder::is_ready(Index record, Index round_first) const {
+bool CompactEncoder::is_ready(Index record, Index round_first) {
   const auto was_there = [&](Index wedge) { return wedge < mesh_.record_wedge_begin[round_first]; };
   const std::span<const Index> ring = polygon(record);
   if (!std::all_of(ring.begin(), ring.end(), was_there)) return false;
@@ -225,11 +227,18 @@ Index CompactEncoder::take_round(Index first) {
   return record;
 }
 
-Index CompactEncoder::find_border(Index from, Index to) const {
-  const PatchMesh& level = levels_.mesh();
-  for (Index h = 0; h < 3 * level.face_count(); ++h)
-    if (level.from(h) == from && level.to(h) == to && level.twin(h) == kNoIndex) return h;
-  return kNoIndex;
+/// Returns the border half-edge between two points of the level before the round, or kNoIndex.
+Index CompactEncoder::find_border(Index from, Index to) {
+  const auto key = [](Index a, Index b) { return std::uint64_t{a} << 32U | b; };
+  if (borders_of_ != round_) {
+    borders_of_ = round_;
+    borders_.clear();
+    const PatchMesh& level = levels_.mesh();
+    for (Index h = 0; h < 3 * level.face_count(); ++h)
+      if (level.twin(h) == kNoIndex) borders_[key(level.from(h), level.to(h))] = h;
+  }
+  const auto found = borders_.find(key(from, to));
+  return found == borders_.end() ? kNoIndex : found->second;
 }
 
 Index CompactEncoder::closing_edge(Index record) const {
