@@ -214,7 +214,7 @@ TEST_CASE("a compact stream depends on nothing but the mesh") {
   CHECK(encoded(progressive(moved, 1.5)).bytes != bytes);
 }
 
-TEST_CASE("a compact stream that ends with a chunk is the level that the chunk leads to; any other cut is an error") {
+TEST_CASE("a compact stream that ends with a chunk is the level it leads to, and any other cut is an error") {
   const ProgressiveMesh mesh = progressive(terrain(40, 3));
   const CompactStream stream = encoded(mesh);
   const auto chunks = read_compact_chunks(stream.bytes);
