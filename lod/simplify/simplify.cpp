@@ -18,6 +18,7 @@
 
 #include "distance/deviation_bounds.h"
 #include "simplify/creases.h"
+#include "simplify/dense_round.h"
 #include "simplify/evaluator_pool.h"
 #include "simplify/locks.h"
 #include "simplify/pieces.h"
@@ -91,6 +92,8 @@ class Simplifier {
   void evaluate(std::span<const Index> vertices, const Progress& progress);
   void evaluate(RemovalEvaluator& evaluator, Index vertex);
   bool choose_candidates();
+  void choose_dense();
+  void pick_round();
   bool run_round();
   std::size_t plan_batch(std::size_t candidate);
   void describe(RemovalEvaluator& evaluator, PlannedRemoval& planned);
@@ -136,7 +139,10 @@ class Simplifier {
   std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
   std::vector<Index> standing_;      // sites that are left, ascending, and some that have gone
   std::vector<Index> candidates_;
-  std::vector<Index> claimed_;  // by vertex: the round that last claimed it, + 1
+  DenseRound dense_;
+  std::vector<Index> within_;             // its limit: candidates of a dense round
+  std::vector<Index> picks_, postponed_;  // of a dense round: whose turn it is, and who is next
+  std::vector<Index> claimed_;            // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
   std::vector<Index> bent_;  // vertices around removals after which K̄ is not known yet
   std::vector<Index> looked_at_;
@@ -208,6 +214,10 @@ bool Simplifier::choose_candidates() {
   const bool is_coarse = static_cast<double>(state_.connectivity.face_count()) <
                          kCoarseShare * static_cast<double>(state_.mesh.face_count());
   if (is_hybrid && many_turn && relax_angles(is_coarse)) return choose_candidates();
+  if (options_.dense_rounds > 0) {
+    choose_dense();
+    return true;
+  }
   const double narrow = is_hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
   const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size())));
@@ -227,6 +237,42 @@ bool Simplifier::choose_candidates() {
   return true;
 }
 
+/// Replaces `candidates_`, all that can go, by those picked for a dense round whose turn has not come; rings that meet
+/// take turns. Where none is left, a new round is picked.
+void Simplifier::choose_dense() {
+  const auto drop_illegal = [&](std::vector<Index>& vertices) {
+    std::erase_if(vertices, [&](Index v) { return !state_.connectivity.has_vertex(v) || cost_[v] == kIllegal; });
+  };
+  for (;;) {
+    std::swap(picks_, postponed_);
+    postponed_.clear();
+    drop_illegal(picks_);
+    if (!picks_.empty()) break;
+    drop_illegal(candidates_);
+    if (candidates_.empty()) return;
+    pick_round();
+  }
+  candidates_ = picks_;
+}
+
+/// Picks a round among `candidates_` and postpones all of it; none where costs have risen above what they were.
+void Simplifier::pick_round() {
+  const auto cheaper = [&](Index a, Index b) { return cost_[a] < cost_[b]; };
+  const auto middle = candidates_.begin() + static_cast<std::ptrdiff_t>(candidates_.size() / 2);
+  std::nth_element(candidates_.begin(), middle, candidates_.end(), cheaper);
+  const float cheapest = cost_[*std::min_element(candidates_.begin(), candidates_.end(), cheaper)];
+  limit_ = std::max(cheapest, static_cast<float>(static_cast<double>(cost_[*middle]) * options_.dense_rounds));
+  within_.clear();
+  for (const Index v : candidates_)
+    if (cost_[v] <= limit_) within_.push_back(v);
+  looked_at_.clear();
+  for (const Index v : within_)
+    if (stale_[v] != 0) looked_at_.push_back(v);
+  evaluate(looked_at_, within_round_);
+  std::erase_if(within_, [&](Index v) { return cost_[v] > limit_; });
+  postponed_ = dense_.pick(state_.connectivity, within_, cost_);
+}
+
 /// Claims a vertex, its copies and their rings for its removal, unless one of them is claimed in this round.
 bool Simplifier::claim_ring(Index vertex) {
   const Connectivity& mesh = state_.connectivity;
@@ -244,7 +290,10 @@ std::size_t Simplifier::plan_batch(std::size_t candidate) {
   batch_size_ = 0;
   for (; candidate < candidates_.size() && batch_size_ < kBatch; ++candidate) {
     const Index vertex = candidates_[candidate];
-    if (!claim_ring(vertex)) continue;
+    if (!claim_ring(vertex)) {
+      if (options_.dense_rounds > 0) postponed_.push_back(vertex);
+      continue;
+    }
     if (batch_size_ == batch_.size()) batch_.emplace_back();
     batch_[batch_size_++].vertex = vertex;
   }

@@ -606,6 +606,59 @@ TEST_CASE("what skins and morph targets do counts: their middles stay dense wher
   CHECK(share_inside(level_of(morph_grid(16), 1)) > 1.5 * share_inside(level_of(morph_grid(16), 0)));
 }
 
+TEST_CASE("dense rounds lead to the same finest level by fewer stretches of removals that do not need each other") {
+  // Stretches of records of which none replaces a face that another of them made.
+  const auto stretches = [](const ProgressiveMesh& mesh) {
+    std::vector<std::vector<int>> made_in;
+    std::vector<Index> count;
+    for (const FaceGroup& group : mesh.groups) {
+      made_in.emplace_back(group.face_count, 0);
+      count.push_back(static_cast<Index>(group.base_corners.size() / 3));
+    }
+    int stretch = 1;
+    for (std::size_t k = 0; k < mesh.record_count(); ++k) {
+      bool needs_this = false;
+      for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s)
+        for (auto i = mesh.slot_begin(s); i < mesh.slot_begin(s + 1); ++i)
+          needs_this = needs_this || made_in[mesh.sectors[s].group][mesh.slots[i]] == stretch;
+      if (needs_this) ++stretch;
+      for (Index s = mesh.sector_begin[k]; s < mesh.sector_begin[k + 1]; ++s) {
+        std::vector<int>& group = made_in[mesh.sectors[s].group];
+        for (auto i = mesh.slot_begin(s); i < mesh.slot_begin(s + 1); ++i) group[mesh.slots[i]] = stretch;
+        for (int i = 0; i < appended_face_count(mesh.sectors[s].shape); ++i)
+          group[count[mesh.sectors[s].group]++] = stretch;
+      }
+    }
+    return stretch;
+  };
+  SimplifyOptions dense;
+  dense.dense_rounds = 1.5;
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    const Mesh mesh = mesh_of(shape.soup);
+    const SimplifyResult result = simplified(mesh, dense);
+    REQUIRE(validate(result.mesh));
+    CHECK(triangle_set(extract_level(result.mesh, static_cast<Index>(result.mesh.record_count()))) ==
+          triangle_set(mesh));
+  }
+  const Mesh mesh = mesh_of(icosphere(kReduced ? 3 : 4, 0.05, 1));
+  SimplifyOptions narrow;  // where all cost the same, none costs less than the median
+  narrow.dense_rounds = 0.5;
+  CHECK(simplified(mesh_of(tetrahedron()), narrow).mesh.record_count() ==
+        simplified(mesh_of(tetrahedron())).mesh.record_count());
+  CHECK(simplified(mesh_of(icosphere(2, 0, 1)), narrow).mesh.base_vertex_count < 12);
+  const SimplifyResult wide = simplified(mesh, dense), usual = simplified(mesh);
+  CHECK(wide.mesh.base_vertex_count <= usual.mesh.base_vertex_count + 2);
+  CHECK(2 * stretches(wide.mesh) < stretches(usual.mesh));
+  const double loss = rms_at(mesh, wide, mesh.face_count() / 10) / rms_at(mesh, usual, mesh.face_count() / 10);
+  CHECK(loss < 1.3);
+  // The records do not depend on the number of threads.
+  SimplifyResult alone;
+  with_threads(1, [&] { alone = simplified(mesh, dense); });
+  CHECK(alone.mesh.polygons == wide.mesh.polygons);
+  CHECK(alone.mesh.deviation == wide.mesh.deviation);
+}
+
 TEST_CASE("any number of threads gives the same records and bounds") {
   for (const TriangleSoup& soup : {icosphere(5, 0.05, 1), seam_sphere(96, 64), terrain(80, 2)}) {
     const Mesh mesh = mesh_of(soup);

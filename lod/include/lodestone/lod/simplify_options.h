@@ -62,6 +62,11 @@ struct SimplifyOptions {
   /// Let the last piece of the mesh go, too, so that the base mesh is empty. Smaller pieces always may.
   bool vanish = false;
   std::vector<float> importance;  ///< one per vertex of the mesh, or empty: multiplies the vertex's cost; 0 or more
+  /// Above 0: removals come in as few rounds as may be, whose records code into the fewest bytes (`encode_compact`). A
+  /// round then takes as many vertices as it can, no two of them neighbours, of all that cost at most this many times
+  /// the median. 1.5 makes streams a fifth smaller than 0 does; 2 makes them a little smaller still, and levels lie a
+  /// little further off. 0: a round takes the cheapest.
+  double dense_rounds = 0;
   StopCriteria stop;
   /// See core/effort.h. By the hybrid metric up to 2 the volume swept is charged alone; from 3 on the distances of what
   /// was removed are, too, of one way to fill a hole at first, of more from 5 and from 8 on. The others know no effort.

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace lodestone::detail {
+
+/// A binary range coder. One class writes and reads, so that what models the bits is written once: `code` takes the bit
+/// when it writes, and gives it when it reads.
+class BitCoder {
+ public:
+  BitCoder() = default;  ///< writes
+  explicit BitCoder(std::span<const std::byte> bytes) : reading_(true), input_(bytes) {
+    for (int i = 0; i < 4; ++i) code_ = code_ << 8U | next_byte();
+  }
+
+  bool is_reading() const { return reading_; }
+
+  /// Codes a bit that is 1 with probability `one` / 65536, `one` in 1 … 65535.
+  int code(int bit, std::uint32_t one) {
+    const std::uint32_t range = high_ - low_;
+    const std::uint32_t middle = low_ + (range >> 16U) * one + (((range & 0xFFFFU) * one) >> 16U);
+    if (reading_) bit = code_ <= middle ? 1 : 0;
+    if (bit != 0)
+      high_ = middle;
+    else
+      low_ = middle + 1;
+    while (((low_ ^ high_) >> 24U) == 0) shift();
+    return bit;
+  }
+
+  /// Codes the low `count` bits of a value, both values of each as likely.
+  std::uint32_t code_raw(std::uint32_t value, int count) {
+    std::uint32_t result = 0;
+    while (count-- > 0)
+      result = result << 1U | static_cast<std::uint32_t>(code(static_cast<int>(value >> count & 1U), 32768));
+    return result;
+  }
+
+  /// Ends writing with the fewest bytes that a reader, who takes zeros for what is missing, needs.
+  std::vector<std::byte> finish() {
+    for (int kept = 1; kept <= 4; ++kept) {
+      const std::uint32_t mask = kept == 4 ? 0 : 0xFFFFFFFFU >> (8 * kept);
+      const std::uint32_t value = (low_ + mask) & ~mask;
+      if (value < low_ || value > high_) continue;  // wrapped around, or beyond
+      for (int i = 0; i < kept; ++i) output_.push_back(static_cast<std::byte>(value >> (24 - 8 * i)));
+      break;
+    }
+    while (!output_.empty() && output_.back() == std::byte{0}) output_.pop_back();
+    return std::move(output_);
+  }
+
+  /// How many bits have been coded, as a real number: for reports alone.
+  double bits() const {
+    const double bytes = reading_ ? static_cast<double>(read_) - 4 : static_cast<double>(output_.size());
+    return 8 * bytes + 32 - std::log2(static_cast<double>(high_ - low_) + 1);
+  }
+
+ private:
+  void shift() {
+    if (!reading_) output_.push_back(static_cast<std::byte>(high_ >> 24U));
+    low_ <<= 8U;
+    high_ = high_ << 8U | 255U;
+    if (reading_) code_ = code_ << 8U | next_byte();
+  }
+  std::uint32_t next_byte() {
+    const std::size_t at = read_++;
+    return at < input_.size() ? static_cast<std::uint32_t>(input_[at]) : 0;
+  }
+
+  std::uint32_t low_ = 0;
+  std::uint32_t high_ = 0xFFFFFFFFU;
+  std::uint32_t code_ = 0;
+  bool reading_ = false;
+  std::span<const std::byte> input_;
+  std::size_t read_ = 0;
+  std::vector<std::byte> output_;
+};
+
+}  // namespace lodestone::detail

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+// Arithmetic that steers decoding: integers only, so that every machine finds the same.
+
+namespace lodestone::detail {
+
+/// Returns 16 · log2(x), rounded to about one unit; 0 for x = 0.
+constexpr int log2_16(std::uint64_t x) {
+  constexpr std::array<std::uint8_t, 64> kLog = {0,  1,  1,  1,  2,  2,  2,  3,  3,  3,  4,  4,  4,  4,  5,  5,
+                                                 5,  6,  6,  6,  6,  7,  7,  7,  7,  8,  8,  8,  9,  9,  9,  9,
+                                                 9,  10, 10, 10, 10, 11, 11, 11, 11, 12, 12, 12, 12, 12, 13, 13,
+                                                 13, 13, 13, 14, 14, 14, 14, 14, 15, 15, 15, 15, 15, 16, 16, 16};
+  if (x < 2) return 0;
+  const int top = 63 - std::countl_zero(x);
+  const auto mantissa = top >= 6 ? x >> (top - 6) : x << (6 - top);
+  return 16 * top + kLog[mantissa & 63U];
+}
+
+/// Returns 2^(x / 16), for x in 0 … 16 · 40, rounded down; 1 for less.
+constexpr std::int64_t exp2_16(int x) {
+  constexpr std::array<std::uint16_t, 16> kExp = {4096, 4277, 4467, 4664, 4871, 5087, 5312, 5547,
+                                                  5793, 6049, 6317, 6597, 6889, 7194, 7512, 7845};
+  x = std::clamp(x, 0, 640);
+  return static_cast<std::int64_t>(std::uint64_t{kExp[x % 16]} << (x / 16) >> 12U);
+}
+
+/// Returns the square root, rounded down.
+constexpr std::uint32_t square_root(std::uint64_t x) {
+  if (x == 0) return 0;
+  std::uint64_t root = std::uint64_t{1} << ((64 - std::countl_zero(x) + 1) / 2);  // not below it
+  for (;;) {
+    const std::uint64_t next = (root + x / root) / 2;
+    if (next >= root) return static_cast<std::uint32_t>(std::min<std::uint64_t>(root, 0xFFFFFFFFU));
+    root = next;
+  }
+}
+
+/// Divides, rounding to nearest, halves up. Pre: b > 0.
+constexpr std::int64_t divide(std::int64_t a, std::int64_t b) {
+  const std::int64_t doubled = 2 * a + b;
+  const std::int64_t quotient = doubled / (2 * b);
+  return quotient - (doubled % (2 * b) < 0 ? 1 : 0);
+}
+
+struct Vec3i {
+  std::int64_t x = 0, y = 0, z = 0;
+
+  std::int64_t operator[](int c) const { return c == 0 ? x : c == 1 ? y : z; }
+  std::int64_t& operator[](int c) { return c == 0 ? x : c == 1 ? y : z; }
+  friend Vec3i operator+(const Vec3i& a, const Vec3i& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec3i operator-(const Vec3i& a, const Vec3i& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec3i operator*(const Vec3i& a, std::int64_t s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend Vec3i operator/(const Vec3i& a, std::int64_t s) { return {a.x / s, a.y / s, a.z / s}; }
+  friend bool operator==(const Vec3i&, const Vec3i&) = default;
+};
+
+constexpr std::int64_t dot(const Vec3i& a, const Vec3i& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr Vec3i cross(const Vec3i& a, const Vec3i& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Vec3i divide(const Vec3i& a, std::int64_t b) { return {divide(a.x, b), divide(a.y, b), divide(a.z, b)}; }
+inline std::uint64_t squared(const Vec3i& a) { return static_cast<std::uint64_t>(dot(a, a)); }
+
+}  // namespace lodestone::detail

@@ -1,0 +1,80 @@
+#include "codec/number_coder.h"
+
+#include <algorithm>
+#include <array>
+
+#include "codec/fixed_point.h"
+
+namespace lodestone::detail {
+namespace {
+
+// A number lies on one side of the prediction, so many steps away; the ends of steps in sixteenths of the scale.
+constexpr std::array<int, 14> kSteps = {5, 11, 18, 26, 36, 48, 64, 86, 118, 170, 256, 450, 1000, 4000};
+constexpr std::uint32_t kNodes = 20;
+constexpr std::uint32_t kScales = 24;
+constexpr std::uint32_t kFractions = 8;
+
+constexpr std::array<std::uint32_t, 6> kStepContexts = {kNodes * 2 * kScales,
+                                                        kNodes* kFractions * 8,
+                                                        kNodes * 4 * NumberCoder::kHints,
+                                                        kNodes * 4 * NumberCoder::kHints,
+                                                        kNodes* NumberCoder::kHints * 4,
+                                                        kNodes * 8};
+constexpr std::array<std::uint32_t, 2> kRestContexts = {kNodes * 4, kNodes* kScales};
+
+}  // namespace
+
+NumberCoder::NumberCoder() : steps_(kStepContexts, kNodes * 4), rest_(kRestContexts, 4) {}
+
+std::int64_t NumberCoder::code(BitCoder& coder, std::int64_t number, const Guess& guess) {
+  const std::int64_t scale = std::max<std::int64_t>(guess.scale, 1);
+  const std::int64_t first = (guess.value + 15) >> 4;  // the least number not below the prediction
+  const auto fraction = static_cast<std::uint32_t>(((first << 4) - guess.value) >> 1);  // 0 … 7
+  const auto log_scale =
+      static_cast<std::uint32_t>(std::clamp((log2_16(static_cast<std::uint64_t>(scale)) - 16) / 8, 0, 23));
+  const auto small =
+      static_cast<std::uint32_t>(std::clamp((log2_16(static_cast<std::uint64_t>(scale)) - 32) / 8, 0, 7));
+  std::uint32_t side = 0;
+  const auto code_step = [&](std::uint32_t node, int bit) {
+    const std::uint32_t f = node < 4 ? (side != 0 ? fraction : fraction ^ 7U) : 0;
+    const std::uint32_t contexts[6] = {(node * 2 + (small < 7 ? side : 0)) * kScales + log_scale,
+                                       (node * kFractions + f) * 8 + small,
+                                       (node * 4 + guess.kind) * kHints + guess.hints[0],
+                                       (node * 4 + guess.kind) * kHints + guess.hints[1],
+                                       (node * kHints + guess.hints[2]) * 4 + std::min(small / 2, 3U),
+                                       node * 8 + small};
+    return coder.is_reading() ? steps_.code(coder, 0, contexts, node * 4 + guess.kind)
+                              : steps_.code(coder, bit, contexts, node * 4 + guess.kind);
+  };
+  side = static_cast<std::uint32_t>(code_step(0, number >= first ? 1 : 0));
+  const std::int64_t distance = side != 0 ? number - first : first - 1 - number;
+  // Steps outwards, then halving within the step.
+  std::int64_t begin = 0, end = 0;
+  std::uint32_t step = 0;
+  for (;; ++step) {
+    end = std::max(begin + 1, (scale * kSteps[std::min<std::size_t>(step, kSteps.size() - 1)] + 128) >> 8);
+    if (step >= kSteps.size()) end = begin + (begin - 0) + 1;
+    if (step + 2 >= kNodes) {
+      end = begin + (std::int64_t{1} << 34);
+      break;
+    }
+    if (code_step(1 + step, distance >= end ? 1 : 0) == 0) break;
+    begin = end;
+  }
+  int level = 0;
+  while (end - begin > 1) {
+    const std::int64_t middle = begin + (end - begin) / 2;
+    const std::uint32_t contexts[2] = {step * 4 + static_cast<std::uint32_t>(std::min(level, 3)),
+                                       step * kScales + log_scale};
+    int upper = distance >= middle ? 1 : 0;
+    if (level < 2)
+      upper = rest_.code(coder, upper, contexts, static_cast<std::uint32_t>(level));
+    else
+      upper = coder.code(upper, 32768);
+    (upper != 0 ? begin : end) = middle;
+    ++level;
+  }
+  return side != 0 ? first + begin : first - 1 - begin;
+}
+
+}  // namespace lodestone::detail

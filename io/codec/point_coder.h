@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <lodestone/core/ids.h>
+
+#include "codec/bit_coder.h"
+#include "codec/fixed_point.h"
+#include "codec/number_coder.h"
+#include "codec/online_fit.h"
+#include "codec/patch_mesh.h"
+#include "codec/ring.h"
+
+namespace lodestone::detail {
+
+/// Codes the positions of vertices on a grid, each from the ring around it.
+class PointCoder {
+ public:
+  explicit PointCoder(int grid_bits);
+
+  /// Codes the next vertex of the base mesh, unless its position is known. False where what is read lies off the grid.
+  bool code_base(BitCoder& coder, Vec3i& position, bool is_known);
+
+  /// Looks at the level before a round.
+  void start_round(const PatchMesh& mesh, std::span<const Vec3i> positions);
+
+  /// Guesses where a new vertex lies, for those that are coded before it. `star`: its faces in order, it first in each.
+  static Vec3i guess(const PatchMesh& mesh, std::span<const Index> star, bool closed, std::span<const Vec3i> positions);
+
+  /// Codes the next vertex: `position` is what a writer has, and a reader gets. Those of its round that follow have a
+  /// guess. False where what is read lies off the grid.
+  bool code(BitCoder& coder, const PatchMesh& mesh, std::span<const Index> star, bool closed,
+            std::span<const Vec3i> positions, Vec3i& position);
+
+ private:
+  static constexpr int kSizes = 4;   // of rings, told apart where positions are predicted
+  static constexpr int kTraits = 9;  // of a ring, from which the size of errors is predicted
+  using Pulls = OnlineFit<Ring::kPulls>;
+  using Traits = OnlineFit<kTraits>;
+
+  /// How wrong a prediction was: sixteenths of the logarithm of its error's two parts over the ring's radius.
+  struct Miss {
+    int normal = 0;
+    int tangent = 0;
+  };
+  struct Prediction {
+    Vec3i point;
+    Miss size;  // expected, sixteenths of the logarithm in sixteenths of a step
+    Pulls::Features normal{};
+    std::array<Pulls::Features, 3> tangent{};  // by coordinate
+    Traits::Features normal_traits{}, tangent_traits{};
+  };
+
+  void find_misses();
+  void predict(bool closed);
+  void predict_size();
+  void learn(const Vec3i& position, bool closed);
+  void code_coordinates(BitCoder& coder, Vec3i& position);
+  std::size_t size_class(bool closed) const;
+  bool is_on_grid(const Vec3i& position) const;
+
+  int grid_bits_;
+  NumberCoder base_;
+  NumberCoder numbers_;
+  std::vector<Pulls> normal_pulls_, tangent_pulls_;  // by class of ring size
+  Traits normal_size_, tangent_size_;
+
+  std::vector<Vec3i> normals_;  // by vertex of the level before the round
+  std::vector<Miss> misses_;    // by vertex
+  std::size_t base_count_ = 0;
+
+  // Of the vertex at hand.
+  Ring ring_;
+  Miss around_;  // mean of those around
+  bool has_misses_ = false;
+  Prediction prediction_;
+};
+
+}  // namespace lodestone::detail

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <lodestone/core/ids.h>
+
+#include "codec/fixed_point.h"
+#include "codec/patch_mesh.h"
+
+namespace lodestone::detail {
+
+inline constexpr int kUnitBits = 14;   ///< fractional bits of unit vectors
+inline constexpr int kRatioBits = 24;  ///< fractional bits of ratios of variances
+
+/// Returns a vector of length 1, or the zero vector for itself.
+Vec3i unit(Vec3i v);
+/// The length of a vector along a unit vector; a unit vector times a length.
+inline std::int64_t along(const Vec3i& v, const Vec3i& unit) { return dot(v, unit) >> kUnitBits; }
+inline Vec3i times(const Vec3i& unit, std::int64_t length) {
+  return {unit.x * length >> kUnitBits, unit.y * length >> kUnitBits, unit.z * length >> kUnitBits};
+}
+
+/// The ring of a new vertex, and what it tells of where the vertex lies. Lengths are in sixteenths of the grid's step.
+class Ring {
+ public:
+  static constexpr int kPulls = 4;
+
+  /// Looks at the star of a vertex, which is first in each of its faces; `normals` are those of the vertices around.
+  void look(const PatchMesh& mesh, std::span<const Index> star, bool closed, std::span<const Vec3i> positions,
+            std::span<const Vec3i> normals);
+
+  std::span<const Index> corners() const { return corners_; }
+  /// The vertices beyond its edges.
+  std::span<const Index> beyond() const { return beyond_; }
+  int size() const { return static_cast<int>(corners_.size()); }
+
+  Vec3i mean;               ///< of the corners; where the ring is open, of its ends
+  Vec3i normal;             ///< unit; 0 where it has none
+  std::int64_t radius = 0;  ///< ≥ 16
+  /// Where else the vertex may lie, seen from the mean: the mean of the vertices beyond; of the edges, the longer the
+  /// more; of the corners of parallelograms, the smaller the more; of the corners' tangent planes.
+  std::array<Vec3i, kPulls> pulls;
+  std::int64_t spread[3][3] = {};  ///< covariance of the corners across the normal, of trace 2, kRatioBits
+  int log_least = 0;               ///< 16 · log2 of the shortest radius
+  int log_edge = 0;                ///< of the mean edge
+  int log_beyond = 0;              ///< of the mean distance of the vertices beyond
+
+ private:
+  void find_mean(std::span<const Index> star, bool closed);
+  void find_pulls(const PatchMesh& mesh, std::span<const Index> star, std::span<const Vec3i> positions,
+                  std::span<const Vec3i> normals);
+  void find_spread();
+
+  std::vector<Index> corners_;
+  std::vector<Index> beyond_;
+  std::vector<Vec3i> points_;  // the corners', sixteenths
+};
+
+}  // namespace lodestone::detail

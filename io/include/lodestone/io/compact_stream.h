@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <lodestone/core/result.h>
+#include <lodestone/core/vec.h>
+#include <lodestone/lod/progressive_mesh.h>
+
+namespace lodestone {
+
+/// The cube whose grid positions are rounded to: equal for all meshes that must not come apart.
+struct PositionGrid {
+  Vec3f origin;     ///< its least corner
+  float range = 1;  ///< its edge, > 0
+};
+
+/// Settings of a compact stream. docs/compact-stream.md describes the format, which is a draft: streams are not for
+/// keeping yet.
+struct CompactOptions {
+  int grid_bits = 14;                ///< positions become one of 2^this along each edge of the grid's cube, 8 to 16
+  std::optional<PositionGrid> grid;  ///< unset: the mesh's own box
+};
+
+/// What the parts of a compact stream take, in bits.
+struct CompactSizes {
+  double header = 0;     ///< and what chunks are rounded up by
+  double base = 0;       ///< the base mesh
+  double places = 0;     ///< where vertices appear, and the triangulations there
+  double positions = 0;  ///< where they lie
+  double errors = 0;
+};
+
+/// A progressive mesh as a compact stream.
+struct CompactStream {
+  std::vector<std::byte> bytes;
+  CompactSizes sizes;
+  std::size_t round_count = 0;
+  /// By vertex of the mesh given: its number in the mesh that the stream decodes to.
+  std::vector<Index> vertex_numbers;
+};
+
+/// A chunk of a compact stream: it refines the level that those before it lead to.
+struct CompactChunk {
+  std::uint64_t byte_offset = 0;  ///< from the start of the stream
+  std::uint64_t byte_length = 0;
+  Index record_begin = 0;          ///< first record; chunk 0 holds the base mesh, too
+  Index record_count = 0;          ///< may be 0 in chunk 0
+  std::uint64_t vertex_count = 0;  ///< of the level after the chunk
+  std::uint64_t face_count = 0;    ///< of the level after the chunk
+  float deviation = 0;             ///< bound of the level after the chunk, mesh units
+};
+
+/// Encodes a progressive mesh in few bytes: its positions rounded to a grid, its records put together in rounds that
+/// may come in any order within themselves. The level after each round is one that `mesh` has, too, and so is its
+/// deviation, to which twice what rounding moves a point by is added, rounded up by up to 9 %; the others have that of
+/// the round that they lie in. Fewest bytes come of SimplifyOptions::dense_rounds.
+///
+/// Deterministic. Errors: Unsupported where the mesh has attributes, several groups, or records that are not one open
+/// or closed sector around one wedge; InvalidArgument for options; LimitExceeded.
+Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options = {});
+
+/// Reads where the chunks lie and what they lead to; they need not be there yet. Errors: Malformed, Unsupported
+/// (another version), with offsets.
+Result<std::vector<CompactChunk>> read_compact_chunks(std::span<const std::byte> bytes);
+
+/// Decodes a stream, or its first chunks where `bytes` ends early on a chunk's boundary. The result is valid whatever
+/// the bytes, and the same on every machine. Errors: Malformed, LimitExceeded, Unsupported, with offsets.
+Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes);
+
+}  // namespace lodestone
