@@ -12,6 +12,7 @@
 #include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/hash_index.h>
+#include <lodestone/core/detail/index_limit.h>
 #include <lodestone/core/detail/position_index.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
@@ -42,9 +43,8 @@ using detail::text;
 bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 Result<void> check_lengths(const TriangleSoup& soup) {
-  if (soup.positions.size() >= kNoIndex || soup.indices.size() >= kNoIndex)
-    return fail(ErrorCode::InvalidArgument, text("mesh of ", soup.positions.size(), " points and ", soup.indices.size(),
-                                                 " indices exceeds 32 bits"));
+  LODESTONE_CHECK(detail::check_index_limit("points", soup.positions.size()));
+  LODESTONE_CHECK(detail::check_index_limit("corners", soup.indices.size()));
   if (soup.indices.size() % 3 != 0)
     return fail(ErrorCode::InvalidArgument, text("index count ", soup.indices.size(), " is not a multiple of 3"));
   if (!soup.face_material.empty() && soup.face_material.size() != soup.indices.size() / 3)

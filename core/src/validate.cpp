@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lodestone/core/detail/edges.h>
+#include <lodestone/core/detail/index_limit.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -82,6 +83,9 @@ Result<void> check_fans(const Connectivity& mesh) {
 }  // namespace
 
 Result<void> validate(const Mesh& mesh) {
+  LODESTONE_CHECK(detail::check_index_limit("vertices", mesh.vertex_count()));
+  LODESTONE_CHECK(detail::check_index_limit("wedges", mesh.wedge_count()));
+  LODESTONE_CHECK(detail::check_index_limit("corners", mesh.corner_wedge.size()));
   if (mesh.corner_wedge.size() % 3 != 0)
     return defect(text("corner count ", mesh.corner_wedge.size(), " is not a multiple of 3"));
   if (!mesh.face_material.empty() && mesh.face_material.size() != mesh.face_count())

@@ -38,7 +38,10 @@ class DeviationBounds {
   /// The bound after the last removal, mesh units.
   double current() const { return bound_.empty() ? 0 : static_cast<double>(bound_.back()); }
   /// Frees what only further removals would need.
-  void stop_measuring() { level_.reset(); }
+  void stop_measuring() {
+    level_.reset();
+    since_measured_ = since_start_ = Chain(0);
+  }
   /// One bound for each removal, in order.
   const std::vector<float>& bounds() const { return bound_; }
 

@@ -454,12 +454,13 @@ void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
   std::vector<Triangle> all(mesh.face_count());
   for (Index f = 0; f < all.size(); ++f) all[f] = detail::triangle_of(mesh, f);
   const std::vector<Index> distinct = find_distinct(all);
-  std::vector<Triangle> shown;
-  for (const Index f : distinct) shown.push_back(all[f]);
-  faces = detail::compact_order(shown);
   places.resize(all.size());
+  for (std::size_t i = 0; i < distinct.size(); ++i) all[i] = all[distinct[i]];  // they ascend
+  all.resize(distinct.size());
+  faces = detail::compact_order(all);
+  triangles.reserve(all.size());
   for (Index& f : faces) {
-    triangles.push_back(shown[f]);
+    triangles.push_back(all[f]);
     f = distinct[f];
     for (Index copy = f; copy != kNoIndex; copy = next_copy.empty() ? kNoIndex : next_copy[copy])
       places[copy] = static_cast<Index>(triangles.size() - 1);

@@ -19,6 +19,8 @@ double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
+Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
+
 bool keeps_direction(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before) {
   const Vec3 normal = cross(b - a, c - a);
   return dot(normal, before) > kMinCosine * length(normal) * length(before);
@@ -57,9 +59,10 @@ OriginalGuard::Survey OriginalGuard::survey(const Mesh& level, const SampleNorm&
   Survey result;
   for (Index f = 0; f < level.face_count(); ++f) {
     const double share = 0.5 * length(area_vector(level, f)) / kPointsOfFace;
-    standing_[f] = look_at(corners_of(level, f, level.positions), standing_[f].near);
+    Distances inside{};
+    standing_[f] = look_at(corners_of(level, f, level.positions), standing_[f].near, &inside);
     result.farthest = std::max(result.farthest, standing_[f].distance);
-    for (const double distance : standing_[f].inside) result.error += share * norm.error(distance * distance);
+    for (const double distance : inside) result.error += share * norm.error(distance * distance);
   }
   return result;
 }
@@ -113,9 +116,9 @@ OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) con
 }
 
 /// `near` is a face of the original near there, if known.
-OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near) const {
+OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near, Distances* inside) const {
   const auto& [a, b, c] = corners;
-  Standing result{corners, 0, -1, near, {}};
+  Standing result{{rounded(a), rounded(b), rounded(c)}, 0, -1, near};
   if (!steps_.next()) return result;
   const auto visit = [&](const Vec3& point) {
     const Nearest found = nearest(point, result.near);
@@ -126,7 +129,8 @@ OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index nea
   for (const Vec3& corner : corners) visit(corner);
   const Vec3 normal = normalized(cross(b - a, c - a));
   for (std::size_t k = 0; k < kPointsOfFace; ++k) {
-    result.inside[k] = visit(point_on_triangle(a, b, c, k));
+    const double distance = visit(point_on_triangle(a, b, c, k));
+    if (inside != nullptr) (*inside)[k] = distance;
     result.facing = std::max(result.facing, dot(normal, normalized(area_vector(original_, result.near))));
   }
   return result;
@@ -135,10 +139,11 @@ OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index nea
 /// Whether a face that is now at `corners` need not be looked at: no point of it has moved farther than a corner has.
 bool OriginalGuard::is_surely_fine(const Standing& last, const Corners& corners) const {
   double way = 0;
-  for (std::size_t k = 0; k < 3; ++k) way = std::max(way, length(corners[k] - last.corners[k]));
+  for (std::size_t k = 0; k < 3; ++k) way = std::max(way, length(corners[k] - Vec3(last.corners[k])));
   if (last.distance + way > reach_ || last.facing < kFacesWell) return false;
+  const Corners before{Vec3(last.corners[0]), Vec3(last.corners[1]), Vec3(last.corners[2])};
   const auto normal = [](const Corners& c) { return normalized(cross(c[1] - c[0], c[2] - c[0])); };
-  return dot(normal(corners), normal(last.corners)) > kTurnsLittle;
+  return dot(normal(corners), normal(before)) > kTurnsLittle;
 }
 
 }  // namespace lodestone::detail

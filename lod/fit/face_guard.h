@@ -58,15 +58,15 @@ class OriginalGuard {
 
   /// How a face stood to the original when it was last looked at.
   struct Standing {
-    Corners corners;
+    std::array<Vec3f, 3> corners;                               // which they were before they became Corners
     double distance = std::numeric_limits<double>::infinity();  // of the farthest of its points
     double facing = -1;     // the cosine of the least angle between its normal and the original's at one of its points
     Index near = kNoIndex;  // an original face there
-    std::array<double, kPointsOfFace> inside{};  // distances of the points that are not corners
   };
+  using Distances = std::array<double, kPointsOfFace>;  // of the points of a face that are not corners
 
   static Corners corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions);
-  Standing look_at(const Corners& corners, Index near) const;
+  Standing look_at(const Corners& corners, Index near, Distances* inside = nullptr) const;
   Nearest nearest(const Vec3& point, Index near) const;
   bool is_surely_fine(const Standing& last, const Corners& corners) const;
 

@@ -60,6 +60,7 @@ SurfaceSamples::SurfaceSamples(const Mesh& original, std::span<const Index> face
   if (step > 1) {
     for (std::size_t i = 0; i * step < all.size(); ++i) all[i] = all[i * step];
     all.resize((all.size() + step - 1) / step);
+    all.shrink_to_fit();
   }
   samples_ = std::move(all);
 }

@@ -22,6 +22,8 @@ class EvaluatorPool {
   void for_each(std::size_t count, std::size_t chunk, const Progress& progress,
                 const std::function<void(RemovalEvaluator&, std::size_t)>& job);
 
+  /// Frees all evaluators. Pre: no evaluation is under way, as below.
+  void stop() { idle_.clear(); }
   /// See FaceRules. Pre: no evaluation is under way.
   bool relax_angles(bool beyond) { return rules_.relax_angles(beyond); }
 

@@ -161,6 +161,14 @@ ProgressiveMesh RecordBuilder::finish(const std::vector<float>& deviation) {
   ProgressiveMesh result;
   Numbering numbers(*mesh_);
   number_base(result, numbers);
+  result.sector_begin.reserve(vertex_.size() + 1);
+  result.record_wedge_begin.reserve(vertex_.size() + 1);
+  result.wedge_vertex.reserve(mesh_->wedge_count());
+  result.sectors.reserve(center_.size());
+  result.polygon_begin.reserve(center_.size() + 1);
+  result.polygons.reserve(polygons_.size());
+  result.slots.reserve(triangles_.size());
+  result.triangles.reserve(3 * triangles_.size());
   result.sector_begin.push_back(0);
   result.polygon_begin.push_back(0);
   result.record_wedge_begin.push_back(result.base_wedge_count);

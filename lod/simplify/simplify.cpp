@@ -10,7 +10,9 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 
+#include <lodestone/core/detail/index_limit.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/core/parallel.h>
@@ -55,6 +57,9 @@ constexpr std::size_t kChunk = 64;
 
 // Of the work: the first evaluation of all vertices. The rest is told by the faces that have gone.
 constexpr double kFirstShare = 0.2;
+
+// Records together have about as many corners as the mesh, and are numbered likewise: twice as many have room.
+constexpr std::size_t kMostCorners = kNoIndex / 2;
 
 constexpr float kIllegal = std::numeric_limits<float>::infinity();
 
@@ -108,6 +113,7 @@ class Simplifier {
   bool is_over();
   void tell() const;
   void note_charge(double cost);
+  void stop_removing();
   std::vector<float> charges() const;
 
   void price_pieces();
@@ -533,6 +539,16 @@ Index Simplifier::vertex_left_near(Index vertex, Index piece) const {
   return best;
 }
 
+/// Frees what only further removals would need: the records are as large again while they become the result.
+void Simplifier::stop_removing() {
+  const auto free = [](auto&... all) { ((all = std::remove_reference_t<decltype(all)>()), ...); };
+  bounds_.stop_measuring();
+  evaluators_.stop();
+  state_.points = CarriedPoints(Mesh());
+  free(state_.lines, state_.curvature, state_.original_curvature);
+  free(cost_, verdict_, choice_, stale_, standing_, candidates_, claimed_, dirty_, bent_, looked_at_, batch_);
+}
+
 BlockedCounts Simplifier::count_blocked() const {
   BlockedCounts blocked;
   for (Index v = 0; v < verdict_.size(); ++v) {
@@ -580,7 +596,7 @@ SimplifyResult Simplifier::run() {
   result.blocked = count_blocked();
   if (options_.progress.is_cancelled()) stop_reason_ = StopReason::Cancelled;
   if (stop_reason_ == StopReason::Stuck && result.blocked.error > 0) stop_reason_ = StopReason::CurvatureError;
-  bounds_.stop_measuring();
+  stop_removing();
   result.stop_reason = stop_reason_;
   result.evaluation_count = evaluation_count_;
   result.charge = charges();
@@ -599,6 +615,7 @@ BlockedCounts operator+(const BlockedCounts& a, const BlockedCounts& b) {
 
 Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options) {
   LODESTONE_CHECK(validate(mesh));
+  LODESTONE_CHECK(check_index_limit("corners of a mesh with records", mesh.corner_wedge.size(), kMostCorners));
   if (!options.importance.empty() && options.importance.size() != mesh.vertex_count())
     return fail(ErrorCode::InvalidArgument,
                 text("importance has ", options.importance.size(), " values for ", mesh.vertex_count(), " vertices"));

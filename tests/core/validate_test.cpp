@@ -1,5 +1,7 @@
 #include <lodestone/core/validate.h>
 
+#include <lodestone/core/detail/index_limit.h>
+
 #include "support/mesh_properties.h"
 
 namespace lodestone::test {
@@ -25,6 +27,15 @@ TEST_CASE("validate names the defect of a mesh") {
   CHECK_THAT(message([](Mesh& m) { m.wedge_vertex[3] = 100000; }), contains("wedge 3 names vertex 100000"));
   CHECK_THAT(message([](Mesh& m) { m.face_material.assign(1, 0); }), contains("material count 1 differs"));
   CHECK_THAT(message([](Mesh& m) { m.attributes[0].data.pop_back(); }), contains("attribute "));
+}
+
+TEST_CASE("more than 32-bit indices can number is a limit, named with its numbers") {
+  CHECK(detail::check_index_limit("corners", 4'294'967'295));
+  const auto beyond = detail::check_index_limit("corners", 4'294'967'296);
+  REQUIRE_FALSE(beyond);
+  CHECK(beyond.error().code == ErrorCode::LimitExceeded);
+  CHECK(beyond.error().message == "4294967296 corners are more than the 4294967295 that 32-bit indices can number");
+  CHECK_FALSE(detail::check_index_limit("corners", 7, 6));
 }
 
 }  // namespace lodestone::test

@@ -60,7 +60,8 @@ struct AssembledMesh {
 /// Nothing is turned that winds alike already, nor against normals. Which side is the front normals say, where there
 /// are any; else nine tenths of the faces, or the shape, looking outwards, or most of the faces.
 ///
-/// Pre: array lengths agree. Errors: InvalidArgument where an index or a length is out of range. Cost: O(n log n).
+/// Pre: array lengths agree. Errors: InvalidArgument where an index or a length is out of range, LimitExceeded where
+/// 32-bit indices cannot number all points or corners. Cost: O(n log n).
 Result<AssembledMesh> assemble(const TriangleSoup& soup, const AssemblyOptions& options = {});
 
 /// Returns the soup with one point for each wedge: the inverse of `assemble`, up to order and what it dropped.

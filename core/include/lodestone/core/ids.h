@@ -5,7 +5,7 @@
 
 namespace lodestone {
 
-/// An entry of a flat array: a vertex, wedge, corner or face number.
+/// An entry of a flat array: a vertex, wedge, corner or face number. So a mesh has at most 1.43 billion faces.
 using Index = std::uint32_t;
 
 /// "No such entry", in any array of `Index`.

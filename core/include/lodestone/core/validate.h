@@ -6,7 +6,8 @@
 
 namespace lodestone {
 
-/// Checks array lengths and index ranges of a mesh. Errors: InvalidArgument, naming the first entry at fault.
+/// Checks array lengths and index ranges of a mesh. Errors: InvalidArgument, naming the first entry at fault;
+/// LimitExceeded where 32-bit indices cannot number its corners.
 Result<void> validate(const Mesh& mesh);
 
 /// Checks that a connectivity is a manifold with consistent links: opposites are mutual and share their edge's

@@ -44,7 +44,8 @@ struct SimplifyResult {
 /// Simplifies a mesh to its base by removing vertices in rounds, cheapest first, and records every removal.
 ///
 /// Pre: `mesh` comes from `assemble` (every vertex has one fan of faces). The result's full level is `mesh` with
-/// vertices, wedges and faces renumbered. Deterministic. Errors: InvalidArgument where the mesh is not manifold.
+/// vertices, wedges and faces renumbered. Deterministic. Errors: InvalidArgument where the mesh is not manifold,
+/// LimitExceeded beyond 715 million faces, whose records 32-bit indices might not number.
 Result<SimplifyResult> simplify(const Mesh& mesh, const SimplifyOptions& options = {});
 
 }  // namespace lodestone
