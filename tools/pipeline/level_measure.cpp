@@ -50,9 +50,11 @@ void measure_level(const Scene& scene, const MeasuredSurface& original, const Me
                    BuildResult::MeshPart::Level& reported) {
   const Mesh& whole = original.mesh();
   reported.vertex_count = level.vertex_count();
+  if (!progress.add(0)) return;  // preparing both takes long enough
+  const MeasuredSurface surface(level);
+  if (!progress.add(0)) return;
   const double share = share_of_samples(scene, whole);
-  reported.deviation =
-      measure_deviation(original, MeasuredSurface(level), level_measure(progress.part(kDistancesShare), share));
+  reported.deviation = measure_deviation(original, surface, level_measure(progress.part(kDistancesShare), share));
   reported.attributes = measure_attributes(whole, level, static_cast<std::size_t>(share * kSceneAttributeSamples),
                                            progress.part(1 - kDistancesShare));
 }
