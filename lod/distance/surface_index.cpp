@@ -14,7 +14,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <utility>
@@ -166,14 +165,15 @@ Run run_of(const Triangle& triangle) {
   return run;
 }
 
-bool same_corners(const Triangle& a, const Triangle& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+using Bits = std::array<std::uint32_t, 9>;
+
+Bits bits_of(const Triangle& triangle) { return std::bit_cast<Bits>(triangle); }
+
+bool same_corners(const Triangle& a, const Triangle& b) { return bits_of(a) == bits_of(b); }
 
 std::size_t hash_of(const Triangle& triangle) {
-  static_assert(sizeof(Triangle) == 9 * sizeof(std::uint32_t));
-  std::array<std::uint32_t, 9> bits;
-  std::memcpy(bits.data(), &triangle, sizeof triangle);
   std::uint64_t hash = 0;
-  for (const std::uint32_t b : bits) hash = (hash ^ b) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
+  for (const std::uint32_t b : bits_of(triangle)) hash = (hash ^ b) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29;
   return static_cast<std::size_t>(hash);
 }
 

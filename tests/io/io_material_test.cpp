@@ -360,7 +360,8 @@ TEST_CASE("off: colours of vertices and faces, as bytes and as floats") {
   for (const char* color : {" 255 51 0", " 1.0 0.2 0"}) {
     const std::string vertices = coloured("\n3 1 0\n0 0 0@\n1 0 0@ # c\n0 1 0@\n", color);
     for (const char* keyword : {"COFF", "OFF"})
-      check_color(color_at(read(keyword + vertices + faces, "off").mesh, 0), {1, linear(0.2), 0});
+      check_color(color_at(read(std::string(keyword).append(vertices).append(faces), "off").mesh, 0),
+                  {1, linear(0.2), 0});
     check_color(color_at(read(coloured("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2@\n", color), "off").mesh, 2),
                 {1, linear(0.2), 0});
   }

@@ -51,6 +51,12 @@ void* operator new(std::size_t bytes, std::align_val_t alignment) {
   const auto step = static_cast<std::size_t>(alignment);
   return count(std::aligned_alloc(step, (bytes + step - 1) / step * step), bytes);
 }
+// Sanitizers have those of their own, which call none of the above.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  void* const block = std::malloc(bytes);
+  return block != nullptr ? count(block, bytes) : nullptr;
+}
+void operator delete(void* block, const std::nothrow_t&) noexcept { give_back(block); }
 void operator delete(void* block) noexcept { give_back(block); }
 void operator delete(void* block, std::size_t) noexcept { give_back(block); }
 void operator delete(void* block, std::align_val_t) noexcept { give_back(block); }
