@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -157,9 +156,6 @@ class Body {
   /// Returns what else stands on the line of an ASCII element that has been read; such files are not what they say.
   std::string_view rest_of_line() const {
     if (format_ != Format::Ascii) return {};
-    std::size_t blanks = 0;
-    while (blanks < rest_.size() && is_blank(rest_[blanks]) && rest_[blanks] != '\r') ++blanks;
-    if (blanks == rest_.size() || rest_[blanks] == '\r' || rest_[blanks] == '\n') return {};
     std::string_view line = rest_.substr(0, line_length(rest_));
     return next_token(line);
   }
@@ -500,6 +496,7 @@ class PlyReader {
   Result<void> read_element(const Element& element) {
     if (element.name == "vertex") return read_vertices(element);
     if (element.name == "face") return read_faces(element);
+    text_rows_.reset();  // what follows is read one after the other
     if (element.name == "tristrips") return read_strips(element);
     for (std::size_t i = 0; i < element.count && !body_.failed(); ++i) {
       for (const Property& property : element.properties) body_.skip(property);

@@ -227,6 +227,19 @@ TEST_CASE("ply: pieces give what the whole gives, whether rows have a line each 
   CHECK((read_everyhow(detail::read_ply, source + "some words\n") == whole));
 }
 
+TEST_CASE("ply: elements between those that are read in pieces are passed by, though their rows look like faces") {
+  const std::string source = ply_text();
+  std::string other = replaced(source, "element face 36\n",
+                               "element other 36\nproperty list uchar int a\nproperty list uchar float b\n"
+                               "property int c\nelement face 36\n");
+  const std::string face = "4 0 1 8 7 0 0\n";
+  const std::size_t at = other.find(face);
+  REQUIRE(at != other.npos);
+  for (int i = 0; i < 36; ++i) other.insert(at, "4 9 9 9 9 0 0\n");
+  CHECK((replaced(read_everyhow(detail::read_ply, other), "36 elements 'other' are left out\n", "") ==
+         read_everyhow(detail::read_ply, source)));
+}
+
 TEST_CASE("ply: errors are told as they are of the whole") {
   CHECK(read_everyhow(detail::read_ply, replaced(ply_text(), " 40 2 3", " 40 2 3 4")) ==
         "error 2: ply: element vertex 40: '4' stands behind the 9 properties that the header says");
