@@ -131,10 +131,11 @@ void keep_levels(const std::vector<std::vector<AssetLevel>>& meshes, BuildResult
 }
 
 /// Encodes the levels that a file holds, measures them as they come out of it, and writes it with their numbers.
-Result<void> make_file(const Scene& scene, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
+Result<void> make_file(MeasuredScene& measured, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
                        const BuildOptions& options, const FileLevels& file, BuildResult& result, Notes& notes,
                        const Progress& progress, BuildObserver& observer) {
   Stopwatch stopwatch;
+  const Scene& scene = measured.scene();
   AssetOptions storage = storage_of(scene, options);
   storage.progress = progress.part(kEncodingShare);
   const bool is_one_level = options.layout == FileLayout::FilePerLevel;
@@ -142,7 +143,7 @@ Result<void> make_file(const Scene& scene, const LevelPlan& plan, const std::vec
   LODESTONE_TRY(EncodedGeometry geometry,
                 encode_geometry(scene, levels, storage, is_one_level ? std::optional(file.first) : std::nullopt));
   result.timings_ms.write += stopwatch.lap_ms();
-  LODESTONE_CHECK(measure_levels(scene, plan, options, file, geometry.levels(), result, observer));
+  LODESTONE_CHECK(measure_levels(measured, plan, options, file, geometry.levels(), result, observer));
   result.timings_ms.levels += stopwatch.lap_ms();
   if (options.keep_levels) keep_levels(geometry.levels(), result);
   LODESTONE_TRY(EncodedAsset asset, write_asset(std::move(geometry)));
@@ -172,9 +173,10 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   result.timings_ms.simplify = stopwatch.lap_ms();
 
   SceneFitter fitter(scene, result.simplified, options);
+  MeasuredScene measured(scene);
   const Progress making = stage_progress(observer, BuildStage::MakingLevels);
-  LevelPlan plan = plan_levels(scene, result.simplified, options, fitter, making.part(0));
-  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(scene, result.simplified, plan, fitter, making));
+  LevelPlan plan = plan_levels(measured, result.simplified, options, fitter, making.part(0));
+  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(measured, result.simplified, plan, fitter, making));
   report_plan(scene, plan, levels, result);
   result.timings_ms.levels = stopwatch.lap_ms();
   if (options.strict && !result.met) return result;
@@ -188,7 +190,7 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   const double share = (1 - kStreamsShare) / static_cast<double>(file_count);
   for (std::size_t i = 0; i < file_count; ++i)
     LODESTONE_CHECK(
-        make_file(scene, plan, levels, options, {i, file_count, i}, result, notes, writing.part(share), observer));
+        make_file(measured, plan, levels, options, {i, file_count, i}, result, notes, writing.part(share), observer));
   return result;
 }
 

@@ -9,6 +9,4 @@ Progress stage_progress(BuildObserver& observer, BuildStage stage, double begin,
   return progress;
 }
 
-tl::unexpected<Error> cancelled() { return fail(ErrorCode::Cancelled, "cancelled"); }
-
 }  // namespace lodestone::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <lodestone/core/detail/cancelled.h>
 #include <lodestone/core/progress.h>
 #include <lodestone/pipeline/build_asset.h>
 
@@ -8,8 +9,5 @@ namespace lodestone::detail {
 /// Returns the progress of what is done between two shares of a stage, for the observer, which hears at once that the
 /// first is reached.
 Progress stage_progress(BuildObserver& observer, BuildStage stage, double begin = 0, double end = 1);
-
-/// What a cancelled build ends with.
-tl::unexpected<Error> cancelled();
 
 }  // namespace lodestone::detail

@@ -1,8 +1,6 @@
 #include "pipeline/level_measure.h"
 
 #include <algorithm>
-#include <mutex>
-#include <optional>
 
 #include <lodestone/core/parallel.h>
 #include <lodestone/lod/attribute_deviation.h>
@@ -35,17 +33,6 @@ DeviationOptions level_measure(const Progress& progress, double share = 1) {
   return options;
 }
 
-/// A mesh of a scene, prepared when the first of its levels is measured.
-struct MeasuredMesh {
-  std::once_flag once;
-  std::optional<MeasuredSurface> surface;
-
-  const MeasuredSurface& prepared(const Mesh& mesh) {
-    std::call_once(once, [&] { surface.emplace(mesh); });
-    return *surface;
-  }
-};
-
 void measure_level(const Scene& scene, const MeasuredSurface& original, const Mesh& level, const Progress& progress,
                    BuildResult::MeshPart::Level& reported) {
   const Mesh& whole = original.mesh();
@@ -75,32 +62,30 @@ void total_level(const Scene& scene, std::size_t number, BuildResult& result) {
 
 }  // namespace
 
-bool lies_within(const Mesh& a, const Mesh& b, double limit, const Progress& progress) {
-  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure(progress), limit).maximum_bound() <=
-         limit;
+bool lies_within(const MeasuredSurface& a, const Mesh& b, double limit, const Progress& progress) {
+  return measure_maximum(a, MeasuredSurface(b), level_measure(progress), limit).maximum_bound() <= limit;
 }
 
-double measured_maximum(const Mesh& a, const Mesh& b, const Progress& progress) {
-  return measure_maximum(MeasuredSurface(a), MeasuredSurface(b), level_measure(progress)).maximum_bound();
+double measured_maximum(const MeasuredSurface& a, const Mesh& b, const Progress& progress) {
+  return measure_maximum(a, MeasuredSurface(b), level_measure(progress)).maximum_bound();
 }
 
-Result<void> measure_levels(const Scene& scene, const LevelPlan& plan, const BuildOptions& options,
+Result<void> measure_levels(MeasuredScene& measured, const LevelPlan& plan, const BuildOptions& options,
                             const FileLevels& file, std::vector<std::vector<AssetLevel>>& meshes, BuildResult& result,
                             BuildObserver& observer) {
+  const Scene& scene = measured.scene();
   const std::size_t count = meshes.front().size();
   const auto files = static_cast<double>(file.file_count), number_of_file = static_cast<double>(file.file);
   const Progress progress =
       stage_progress(observer, BuildStage::MeasuringLevels, number_of_file / files, (number_of_file + 1) / files);
   const double share = 1 / static_cast<double>(meshes.size() * count);
-  std::vector<MeasuredMesh> originals(meshes.size());
   for_each_in_parallel(meshes.size() * count, [&](std::size_t i) {
     const std::size_t mesh = i / count, level = i % count, number = file.first + level;
     if (progress.is_cancelled()) return;
     const Progress part = progress.part(share);
     const bool is_as_it_was = !options.storage.draco && is_whole(plan, result.simplified, mesh, number);
     if (!is_as_it_was && (level == 0 || !plan.repeats(mesh, number)))
-      measure_level(scene, originals[mesh].prepared(scene.meshes()[mesh].mesh), meshes[mesh][level].mesh, part,
-                    result.meshes[mesh].levels[number]);
+      measure_level(scene, measured.original(mesh), meshes[mesh][level].mesh, part, result.meshes[mesh].levels[number]);
     part.reach(1);
   });
   if (!progress.reach(1)) return cancelled();

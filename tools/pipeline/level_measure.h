@@ -8,10 +8,10 @@
 namespace lodestone::detail {
 
 /// Whether the two surfaces are nowhere farther from each other than `limit`, in mesh units.
-bool lies_within(const Mesh& a, const Mesh& b, double limit, const Progress& progress);
+bool lies_within(const MeasuredSurface& a, const Mesh& b, double limit, const Progress& progress);
 
 /// Returns a bound on how far the two surfaces are from each other anywhere, in mesh units.
-double measured_maximum(const Mesh& a, const Mesh& b, const Progress& progress);
+double measured_maximum(const MeasuredSurface& a, const Mesh& b, const Progress& progress);
 
 /// Which of a plan's levels one of its files holds.
 struct FileLevels {
@@ -21,7 +21,7 @@ struct FileLevels {
 
 /// Measures levels as a file has them, by mesh: sets their deviations, and fills in `result` what it reports of them.
 /// What is all of a mesh, as it was, deviates by nothing. Errors: Cancelled.
-Result<void> measure_levels(const Scene& scene, const LevelPlan& plan, const BuildOptions& options,
+Result<void> measure_levels(MeasuredScene& measured, const LevelPlan& plan, const BuildOptions& options,
                             const FileLevels& file, std::vector<std::vector<AssetLevel>>& meshes, BuildResult& result,
                             BuildObserver& observer);
 

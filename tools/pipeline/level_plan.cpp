@@ -39,26 +39,27 @@ std::vector<double> world_charges(const SimplifyResult& result, Metric metric, d
 }
 
 /// What a level at a position really deviates by, in mesh units, but for quantisation.
-double measured_error(const Mesh& whole, const SimplifyResult& simplified, Index position, std::size_t mesh,
+double measured_error(MeasuredScene& measured, const SimplifyResult& simplified, Index position, std::size_t mesh,
                       SceneFitter& fitter, const Progress& progress) {
   Mesh level = extract_level(simplified.mesh, position);
   if (fitter.fits(mesh)) level = fitter.fitted(mesh, level, progress);
-  return measured_maximum(whole, level, progress);
+  return measured_maximum(measured.original(mesh), level, progress);
 }
 
 /// Returns what measures a mesh's levels, each once: all targets ask for the same ones.
-std::function<double(Index)> error_meter(const Mesh& whole, const SimplifyResult& simplified, std::size_t mesh,
+std::function<double(Index)> error_meter(MeasuredScene& measured, const SimplifyResult& simplified, std::size_t mesh,
                                          SceneFitter& fitter, const Progress& progress) {
-  return [&, mesh, measured = std::map<Index, double>()](Index position) mutable {
-    const auto [found, is_new] = measured.try_emplace(position);
-    if (is_new) found->second = measured_error(whole, simplified, position, mesh, fitter, progress);
+  return [&, mesh, errors = std::map<Index, double>()](Index position) mutable {
+    const auto [found, is_new] = errors.try_emplace(position);
+    if (is_new) found->second = measured_error(measured, simplified, position, mesh, fitter, progress);
     return found->second;
   };
 }
 
 /// What they hold looks at the scene, the streams and the options.
-std::vector<ScenePart> parts_of(const Scene& scene, const std::vector<SimplifyResult>& simplified,
+std::vector<ScenePart> parts_of(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
                                 const BuildOptions& options, SceneFitter& fitter, const Progress& progress) {
+  const Scene& scene = measured.scene();
   const std::vector<double> displacements = quantisation_errors(scene, storage_of(scene, options));
   std::vector<ScenePart> parts;
   for (std::size_t i = 0; i < simplified.size(); ++i) {
@@ -66,7 +67,7 @@ std::vector<ScenePart> parts_of(const Scene& scene, const std::vector<SimplifyRe
     parts.push_back({&simplified[i].mesh, mesh.scale, mesh.instance_count, simplified[i].stop_reason,
                      importance_of(mesh, options.importance),
                      world_charges(simplified[i], options.simplify.metric, mesh.scale),
-                     error_meter(mesh.mesh, simplified[i], i, fitter, progress), kBoxGrowth * displacements[i]});
+                     error_meter(measured, simplified[i], i, fitter, progress), kBoxGrowth * displacements[i]});
   }
   return parts;
 }
@@ -85,9 +86,10 @@ bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplifi
   return plan.choices[level].positions[mesh] == simplified[mesh].mesh.record_count();
 }
 
-LevelPlan plan_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options,
-                      SceneFitter& fitter, const Progress& progress) {
-  const std::vector<ScenePart> parts = parts_of(scene, simplified, options, fitter, progress);
+LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
+                      const BuildOptions& options, SceneFitter& fitter, const Progress& progress) {
+  const Scene& scene = measured.scene();
+  const std::vector<ScenePart> parts = parts_of(measured, simplified, options, fitter, progress);
   LevelPlan plan{{whole_scene(simplified)}, {}, 0};
   for (const ScenePart& part : parts) plan.grid_error = std::max(plan.grid_error, part.displacement * part.scale);
   for (const LevelTarget& target : options.targets) {

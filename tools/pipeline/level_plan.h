@@ -7,6 +7,7 @@
 #include <lodestone/lod/simplify.h>
 #include <lodestone/pipeline/build_asset.h>
 
+#include "pipeline/measured_scene.h"
 #include "pipeline/scene_fitter.h"
 
 namespace lodestone::detail {
@@ -30,8 +31,8 @@ bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplifi
 
 /// Finds each mesh's positions: the whole scene, then what answers the targets. What would repeat the level before is
 /// left out.
-LevelPlan plan_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options,
-                      SceneFitter& fitter, const Progress& progress);
+LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
+                      const BuildOptions& options, SceneFitter& fitter, const Progress& progress);
 
 /// Sorts targets of one kind: finest first, by what they come to for the whole scene. Errors: InvalidArgument for
 /// several kinds.

@@ -13,7 +13,6 @@ namespace {
 
 /// What one level of one mesh is made of.
 struct LevelSource {
-  const SceneMesh& whole;
   const SimplifyResult& simplified;
   const SceneChoice& choice;
   std::size_t mesh = 0;
@@ -26,7 +25,7 @@ void state_why(const SceneChoice& choice, std::size_t mesh, AssetLevel& level) {
   level.deviation_beyond = choice.beyond.empty() ? 0 : choice.beyond[mesh];
 }
 
-AssetLevel make_level(const LevelSource& source, SceneFitter& fitter) {
+AssetLevel make_level(const LevelSource& source, MeasuredScene& measured, SceneFitter& fitter) {
   const Index position = source.choice.positions[source.mesh];
   const ProgressiveMesh& progressive = source.simplified.mesh;
   AssetLevel level;
@@ -37,13 +36,14 @@ AssetLevel make_level(const LevelSource& source, SceneFitter& fitter) {
   Mesh fitted = fitter.fitted(source.mesh, level.mesh, source.progress);
   const double bound = static_cast<double>(progressive.deviation[position]);
   const bool is_limited = source.choice.target.kind == TargetKind::Error;
-  if (!is_limited || lies_within(source.whole.mesh, fitted, bound, source.progress)) level.mesh = std::move(fitted);
+  if (!is_limited || lies_within(measured.original(source.mesh), fitted, bound, source.progress))
+    level.mesh = std::move(fitted);
   return level;
 }
 
 }  // namespace
 
-Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vector<SimplifyResult>& simplified,
+Result<std::vector<LeveledMesh>> make_levels(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
                                              const LevelPlan& plan, SceneFitter& fitter, const Progress& progress) {
   const std::size_t count = plan.level_count();
   std::vector<LeveledMesh> meshes(simplified.size());
@@ -54,8 +54,7 @@ Result<std::vector<LeveledMesh>> make_levels(const Scene& scene, const std::vect
     if (progress.is_cancelled()) return;
     const Progress part = progress.part(share);
     if (!plan.repeats(mesh, level))
-      meshes[mesh].levels[level] =
-          make_level({scene.meshes()[mesh], simplified[mesh], plan.choices[level], mesh, part}, fitter);
+      meshes[mesh].levels[level] = make_level({simplified[mesh], plan.choices[level], mesh, part}, measured, fitter);
     part.reach(1);
   });
   if (!progress.reach(1)) return cancelled();

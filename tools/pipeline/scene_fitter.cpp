@@ -3,7 +3,7 @@
 namespace lodestone::detail {
 
 SceneFitter::SceneFitter(const Scene& scene, const std::vector<SimplifyResult>& simplified, const BuildOptions& options)
-    : scene_(scene), simplified_(simplified), options_(options), slots_(simplified.size()) {}
+    : scene_(scene), simplified_(simplified), options_(options), fitters_(simplified.size()) {}
 
 bool SceneFitter::fits(std::size_t mesh) const {
   const SceneMesh& whole = scene_.meshes()[mesh];
@@ -11,14 +11,12 @@ bool SceneFitter::fits(std::size_t mesh) const {
 }
 
 Mesh SceneFitter::fitted(std::size_t mesh, const Mesh& level, const Progress& progress) {
-  Slot& slot = slots_[mesh];
-  std::call_once(slot.once,
-                 [&] { slot.fitter = std::make_unique<LevelFitter>(scene_.meshes()[mesh].mesh, progress.part(0)); });
   PlacementOptions placement;
   placement.effort = options_.effort;
   placement.fixed = simplified_[mesh].locked;
   placement.progress = progress;
-  return slot.fitter->fit(level, placement);
+  const auto make = [&] { return LevelFitter(scene_.meshes()[mesh].mesh, progress.part(0)); };
+  return fitters_[mesh].get(make).fit(level, placement);
 }
 
 }  // namespace lodestone::detail

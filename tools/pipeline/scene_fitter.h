@@ -1,13 +1,13 @@
 #pragma once
 
-#include <memory>
-#include <mutex>
 #include <vector>
 
 #include <lodestone/io/scene.h>
 #include <lodestone/lod/placement.h>
 #include <lodestone/lod/simplify.h>
 #include <lodestone/pipeline/build_options.h>
+
+#include "pipeline/on_first_use.h"
 
 namespace lodestone::detail {
 
@@ -25,15 +25,10 @@ class SceneFitter {
   Mesh fitted(std::size_t mesh, const Mesh& level, const Progress& progress);
 
  private:
-  struct Slot {
-    std::once_flag once;
-    std::unique_ptr<LevelFitter> fitter;
-  };
-
   const Scene& scene_;
   const std::vector<SimplifyResult>& simplified_;
   const BuildOptions& options_;
-  std::vector<Slot> slots_;  // by mesh
+  std::vector<OnFirstUse<LevelFitter>> fitters_;  // by mesh
 };
 
 }  // namespace lodestone::detail
