@@ -49,15 +49,14 @@ Mesh plain_mesh(const std::filesystem::path& path) {
   return std::move(assembled->mesh);
 }
 
-PositionGrid grid_of(const Mesh& mesh) {
+CompactGrid grid_of(const Mesh& mesh) {
   const Box box = bounding_box(mesh);
   const Vec3 size = box.high - box.low;
-  return {{static_cast<float>(box.low.x), static_cast<float>(box.low.y), static_cast<float>(box.low.z)},
-          static_cast<float>(std::max({size.x, size.y, size.z}))};
+  return {to_float(box.low), static_cast<float>(std::max({size.x, size.y, size.z}))};
 }
 
 double draco_bits(const Mesh& mesh, int bits, int level) {
-  const PositionGrid grid = grid_of(mesh);
+  const CompactGrid grid = grid_of(mesh);
   detail::QuantizationGrids grids;
   grids.position = {{grid.origin.x, grid.origin.y, grid.origin.z}, grid.range, bits};
   const auto primitive = detail::encode_draco(mesh, grids, {}, level);

@@ -38,6 +38,12 @@ inline void append_bytes(std::vector<std::byte>& out, std::span<const std::byte>
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
+/// Appends a number seven bits a byte, the lowest first; all bytes but the last have the highest bit.
+inline void append_varint(std::vector<std::byte>& out, std::uint64_t value) {
+  for (; value >= 0x80; value >>= 7) out.push_back(static_cast<std::byte>((value & 0x7f) | 0x80));
+  out.push_back(static_cast<std::byte>(value));
+}
+
 /// Returns the bytes as text, unchecked.
 inline std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -18,8 +18,6 @@ class BitCoder {
     for (int i = 0; i < 4; ++i) code_ = code_ << 8U | next_byte();
   }
 
-  bool is_reading() const { return reading_; }
-
   /// Codes a bit that is 1 with probability `one` / 65536, `one` in 1 … 65535.
   int code(int bit, std::uint32_t one) {
     const std::uint32_t range = high_ - low_;
@@ -54,10 +52,9 @@ class BitCoder {
     return std::move(output_);
   }
 
-  /// How many bits have been coded, as a real number: for reports alone.
+  /// How many bits have been written, as a real number: for reports alone.
   double bits() const {
-    const double bytes = reading_ ? static_cast<double>(read_) - 4 : static_cast<double>(output_.size());
-    return 8 * bytes + 32 - std::log2(static_cast<double>(high_ - low_) + 1);
+    return 8 * static_cast<double>(output_.size()) + 32 - std::log2(static_cast<double>(high_ - low_) + 1);
   }
 
  private:

@@ -17,14 +17,6 @@ namespace {
 constexpr std::size_t kFixedBytes = 16;  // magic, version, header_bytes
 constexpr std::size_t kChecksumBytes = 4;
 constexpr std::uint64_t kMostFaces = std::uint64_t{1} << 30U;
-constexpr std::uint64_t kMostBasePerByte = 8;  // points and faces of the base mesh for a byte of its chunk
-
-std::uint32_t checksum32(std::span<const std::byte> bytes) { return static_cast<std::uint32_t>(checksum64(bytes)); }
-
-void append_varint(std::vector<std::byte>& out, std::uint64_t value) {
-  for (; value >= 128; value >>= 7U) out.push_back(static_cast<std::byte>(value | 128U));
-  out.push_back(static_cast<std::byte>(value));
-}
 
 auto broken(const std::string& message, std::size_t at) { return fail(ErrorCode::Malformed, message, at); }
 
@@ -132,15 +124,11 @@ int ErrorScale::code(float error) const {
   return code;
 }
 
-std::uint64_t CompactHeader::record_count() const {
-  std::uint64_t count = 0;
-  for (const CompactChunkEntry& chunk : chunks) count += chunk.record_count;
-  return count;
-}
+std::uint32_t checksum32(std::span<const std::byte> bytes) { return static_cast<std::uint32_t>(checksum64(bytes)); }
 
 std::uint64_t CompactHeader::face_count() const {
   std::uint64_t count = base_face_count;
-  for (const CompactChunkEntry& chunk : chunks) count += 2 * std::uint64_t{chunk.record_count} - chunk.open_count;
+  for (const CompactChunkEntry& chunk : chunks) count += chunk.added_faces();
   return count;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,7 +20,11 @@ inline constexpr std::uint16_t kCompactMinor = 0;
 inline constexpr int kLeastGridBits = 8;
 inline constexpr int kMostGridBits = 16;
 inline constexpr std::uint64_t kMostRecordsPerByte = 8;  ///< of a chunk; the encoder pads it
+inline constexpr std::uint64_t kMostBasePerByte = 8;     ///< points and faces of the base mesh; the same
 inline constexpr std::uint64_t kMostFacesWalked = 256;   ///< over all rounds, for each face of the full mesh
+
+/// Returns the low half of XXH64.
+std::uint32_t checksum32(std::span<const std::byte> bytes);
 
 /// Errors on a logarithmic scale: code 0 is 0, code 255 the largest, eight codes a factor of two.
 class ErrorScale {
@@ -42,13 +45,15 @@ struct CompactChunkEntry {
   std::uint32_t record_count = 0;
   std::uint32_t open_count = 0;     ///< records that add one face; the others add two
   std::uint8_t deviation_code = 0;  ///< of the level after the chunk
-  std::uint32_t checksum = 0;       ///< low half of XXH64
+  std::uint32_t checksum = 0;       ///< see checksum32
+
+  std::uint64_t added_faces() const { return 2 * std::uint64_t{record_count} - open_count; }
 };
 
 struct CompactHeader {
   std::uint32_t header_bytes = 0;  ///< up to the first chunk
   int grid_bits = 0;
-  PositionGrid grid;
+  CompactGrid grid;
   Index material = 0;
   Index base_point_count = 0;
   Index base_vertex_count = 0;  ///< fewer than points where the mesh has several sheets
@@ -57,7 +62,6 @@ struct CompactHeader {
   ErrorScale curvature;
   std::vector<CompactChunkEntry> chunks;
 
-  std::uint64_t record_count() const;
   std::uint64_t face_count() const;
 };
 

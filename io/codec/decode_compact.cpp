@@ -136,14 +136,14 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
 
 Result<void> CompactDecoder::add_chunk(std::size_t i, std::span<const std::byte> bytes) {
   const CompactChunkEntry& chunk = header_.chunks[i];
-  if (static_cast<std::uint32_t>(checksum64(bytes)) != chunk.checksum) return broken("checksum is wrong");
+  if (checksum32(bytes) != chunk.checksum) return broken("checksum is wrong");
   BitCoder coder(bytes);
   if (i == 0) LODESTONE_CHECK(read_base(coder));
   const std::size_t records = mesh_.record_count(), faces = levels_.mesh().face_count();
   for (std::uint32_t round = 0; round < chunk.round_count; ++round) LODESTONE_CHECK(read_round(coder));
   if (mesh_.record_count() - records != chunk.record_count)
     return broken(text("has ", mesh_.record_count() - records, " records where ", chunk.record_count, " are due"));
-  if (levels_.mesh().face_count() - faces != 2 * std::size_t{chunk.record_count} - chunk.open_count)
+  if (levels_.mesh().face_count() - faces != chunk.added_faces())
     return broken("adds another number of faces than is due");
   if (deviation_code_ != chunk.deviation_code) return broken("ends with another deviation than is due");
   return {};
@@ -171,7 +171,7 @@ Result<std::vector<CompactChunk>> read_compact_chunks(std::span<const std::byte>
     chunk.record_count = entry.record_count;
     offset += entry.byte_length;
     record += entry.record_count;
-    faces += 2 * std::uint64_t{entry.record_count} - entry.open_count;
+    faces += entry.added_faces();
     chunk.vertex_count = std::uint64_t{header.base_vertex_count} + record;
     chunk.face_count = faces;
     chunk.deviation = header.deviation.value(entry.deviation_code);

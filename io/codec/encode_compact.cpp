@@ -1,7 +1,6 @@
 #include <lodestone/io/compact_stream.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -10,6 +9,7 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/bytes.h"
 #include "codec/compact_layout.h"
 #include "codec/level_coder.h"
 #include "stream/stream_layout.h"
@@ -48,7 +48,7 @@ Result<void> check(const ProgressiveMesh& mesh, const CompactOptions& options) {
   return {};
 }
 
-PositionGrid box_of(const ProgressiveMesh& mesh) {
+CompactGrid box_of(const ProgressiveMesh& mesh) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Vec3f low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
   for (const Vec3f& p : mesh.positions) {
@@ -343,35 +343,36 @@ void CompactEncoder::end_chunk() {
   bits_at_ = coder_.bits();
   std::uint64_t least = (chunk_.record_count + kMostRecordsPerByte - 1) / kMostRecordsPerByte;
   if (header_.chunks.empty())
-    least = std::max<std::uint64_t>(least, (header_.base_point_count + header_.base_face_count + 7U) / 8);
+    least = std::max<std::uint64_t>(
+        least, (header_.base_point_count + header_.base_face_count + kMostBasePerByte - 1) / kMostBasePerByte);
   if (bytes.size() < least) bytes.resize(least);  // zeros follow anyway
   chunk_.byte_length = bytes.size();
   chunk_.deviation_code = static_cast<std::uint8_t>(deviation_code_);
-  chunk_.checksum = static_cast<std::uint32_t>(checksum64(bytes));
+  chunk_.checksum = checksum32(bytes);
   header_.chunks.push_back(chunk_);
   chunk_ = {};
-  body_.insert(body_.end(), bytes.begin(), bytes.end());
+  append_bytes(body_, bytes);
 }
 
 Result<CompactStream> CompactEncoder::run() {
-  bits_at_ = coder_.bits();
   find_first_slots();
   LODESTONE_CHECK(write_base());
+  const std::uint64_t most_walked = kMostFacesWalked * (std::uint64_t{mesh_.groups.front().face_count} + 1);
   std::uint64_t walked = 0;
   const auto record_count = static_cast<Index>(mesh_.record_count());
   for (Index first = 0, end = 0; first < record_count; first = end) {
     if (coder_.bits() / 8 >= static_cast<double>(std::max(kLeastChunkBytes, body_.size()))) end_chunk();
     walked += levels_.mesh().face_count();
+    if (walked > most_walked)
+      return fail(ErrorCode::LimitExceeded, text("compact stream: more than ", result_.round_count, " rounds of ",
+                                                 record_count, " records are too many"));
     end = take_round(first);
     if (end == first) return unsupported(text("record ", first, " does not fit its level"));
     LODESTONE_CHECK(write_round(first, end));
   }
   end_chunk();
-  if (walked > kMostFacesWalked * (std::uint64_t{mesh_.groups.front().face_count} + 1))
-    return fail(ErrorCode::LimitExceeded,
-                text("compact stream: ", result_.round_count, " rounds of ", record_count, " records are too many"));
   result_.bytes = write_compact_header(header_);
-  result_.bytes.insert(result_.bytes.end(), body_.begin(), body_.end());
+  append_bytes(result_.bytes, body_);
   const CompactSizes& s = result_.sizes;
   result_.sizes.header = 8 * static_cast<double>(result_.bytes.size()) - s.base - s.places - s.positions - s.errors;
   // Points of the base mesh that are one vertex have one number.

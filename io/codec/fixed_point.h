@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstdlib>
 
 // Arithmetic that steers decoding: integers only, so that every machine finds the same.
 
@@ -47,6 +48,11 @@ constexpr std::int64_t divide(std::int64_t a, std::int64_t b) {
   return quotient - (doubled % (2 * b) < 0 ? 1 : 0);
 }
 
+/// Numbers a value's step from `low` on, 0 … count − 1; what lies beyond counts as the last.
+constexpr std::uint32_t bucket(int value, int low, int step, std::uint32_t count) {
+  return static_cast<std::uint32_t>(std::clamp((value - low) / step, 0, static_cast<int>(count) - 1));
+}
+
 struct Vec3i {
   std::int64_t x = 0, y = 0, z = 0;
 
@@ -64,6 +70,13 @@ constexpr Vec3i cross(const Vec3i& a, const Vec3i& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline Vec3i divide(const Vec3i& a, std::int64_t b) { return {divide(a.x, b), divide(a.y, b), divide(a.z, b)}; }
+/// Halves a vector until its coordinates have no more than so many bits; says how often.
+inline int shorten(Vec3i& v, int bits) {
+  int shift = 0;
+  while (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) >> shift >= std::int64_t{1} << bits) ++shift;
+  v = {v.x >> shift, v.y >> shift, v.z >> shift};
+  return shift;
+}
 inline std::uint64_t squared(const Vec3i& a) { return static_cast<std::uint64_t>(dot(a, a)); }
 
 }  // namespace lodestone::detail

@@ -43,8 +43,7 @@ std::int64_t NumberCoder::code(BitCoder& coder, std::int64_t number, const Guess
                                        (node * 4 + guess.kind) * kHints + guess.hints[1],
                                        (node * kHints + guess.hints[2]) * 4 + std::min(small / 2, 3U),
                                        node * 8 + small};
-    return coder.is_reading() ? steps_.code(coder, 0, contexts, node * 4 + guess.kind)
-                              : steps_.code(coder, bit, contexts, node * 4 + guess.kind);
+    return steps_.code(coder, bit, contexts, node * 4 + guess.kind);
   };
   side = static_cast<std::uint32_t>(code_step(0, number >= first ? 1 : 0));
   const std::int64_t distance = side != 0 ? number - first : first - 1 - number;
@@ -52,12 +51,11 @@ std::int64_t NumberCoder::code(BitCoder& coder, std::int64_t number, const Guess
   std::int64_t begin = 0, end = 0;
   std::uint32_t step = 0;
   for (;; ++step) {
-    end = std::max(begin + 1, (scale * kSteps[std::min<std::size_t>(step, kSteps.size() - 1)] + 128) >> 8);
-    if (step >= kSteps.size()) end = begin + (begin - 0) + 1;
     if (step + 2 >= kNodes) {
       end = begin + (std::int64_t{1} << 34);
       break;
     }
+    end = step < kSteps.size() ? std::max(begin + 1, (scale * kSteps[step] + 128) >> 8) : 2 * begin + 1;
     if (code_step(1 + step, distance >= end ? 1 : 0) == 0) break;
     begin = end;
   }

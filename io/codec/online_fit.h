@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 
 #include "codec/fixed_point.h"
 
@@ -25,7 +24,6 @@ class OnlineFit {
     for (int i = 0; i < N; ++i) sum += weights_[i] * features[i];
     return (sum + (1 << (kFraction - 1))) >> kFraction;
   }
-  std::int32_t weight(int i) const { return weights_[i]; }
 
   /// Adds one equation. Magnitudes are cut at 4096.
   void add(const Features& features, std::int64_t target) {

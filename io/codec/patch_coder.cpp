@@ -38,22 +38,10 @@ constexpr std::array<std::uint32_t, 10> kEdgeContexts = {
 
 enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 
-std::uint32_t bucket(int value, int low, int step, std::uint32_t count) {
-  return static_cast<std::uint32_t>(std::clamp((value - low) / step, 0, static_cast<int>(count) - 1));
-}
-
 /// Numbers how many of three are plain, and how many in patches.
 std::uint32_t number_states(std::uint32_t plain, std::uint32_t patched) {
   constexpr std::array<std::uint32_t, 4> kFirst = {0, 4, 7, 9};
   return kFirst[plain] + patched;
-}
-
-/// Halves a vector until it is short enough; says how often.
-int shorten(Vec3i& v, int bits) {
-  int shift = 0;
-  while (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) >> shift >= std::int64_t{1} << bits) ++shift;
-  v = {v.x >> shift, v.y >> shift, v.z >> shift};
-  return shift;
 }
 
 }  // namespace

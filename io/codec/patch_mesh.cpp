@@ -1,6 +1,6 @@
 #include "codec/patch_mesh.h"
 
-#include <algorithm>
+#include <lodestone/core/detail/edges.h>
 
 namespace lodestone::detail {
 
@@ -9,46 +9,34 @@ bool PatchMesh::start(std::vector<Index> corners, std::size_t vertex_count) {
   twins_.assign(corners_.size(), kNoIndex);
   degree_.assign(vertex_count, 0);
   made_in_.assign(face_count(), 0);
-  std::vector<Index> halves(corners_.size());
-  for (Index h = 0; h < halves.size(); ++h) {
-    halves[h] = h;
-    ++degree_[corners_[h]];
-    if (from(h) == to(h)) return false;
-  }
-  const auto low = [&](Index h) { return std::min(from(h), to(h)); };
-  const auto high = [&](Index h) { return std::max(from(h), to(h)); };
-  std::sort(halves.begin(), halves.end(), [&](Index a, Index b) {
-    return low(a) != low(b) ? low(a) < low(b) : high(a) != high(b) ? high(a) < high(b) : a < b;
+  for (const Index vertex : corners_) ++degree_[vertex];
+  bool is_surface = true;
+  const std::vector<HalfEdge> halves = sorted_edges(corners_);
+  for_each_edge(halves, [&](Edge edge) {
+    const bool disagree = edge.size() == 2 && edge[0].forward == edge[1].forward;
+    if (edge[0].is_loop() || edge.size() > 2 || disagree) is_surface = false;
+    if (!is_surface || edge.size() == 1) return;
+    twins_[edge[0].corner] = edge[1].corner;
+    twins_[edge[1].corner] = edge[0].corner;
   });
-  for (std::size_t i = 0; i < halves.size();) {
-    std::size_t end = i + 1;
-    while (end < halves.size() && low(halves[end]) == low(halves[i]) && high(halves[end]) == high(halves[i])) ++end;
-    if (end - i > 2) return false;
-    if (end - i == 2) {
-      if (from(halves[i]) == from(halves[i + 1])) return false;
-      twins_[halves[i]] = halves[i + 1];
-      twins_[halves[i + 1]] = halves[i];
-    }
-    i = end;
-  }
-  return true;
+  return is_surface;
 }
 
-Index PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, std::uint32_t round,
-                        std::vector<Index>& star) {
+void PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, std::uint32_t round,
+                       std::vector<Index>& star) {
   outer_.clear();
   for (const Index half : polygon) outer_.push_back({from(half), to(half), twin(half)});
   for (const Index face : faces)
     for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[corners_[h]];
-  return place_star(closed, faces, round, star);
+  place_star(closed, faces, round, star);
 }
 
-Index PatchMesh::add_ear(Index half, std::uint32_t round, std::vector<Index>& star) {
+void PatchMesh::add_ear(Index half, std::uint32_t round, std::vector<Index>& star) {
   outer_.assign(1, {to(half), from(half), half});
-  return place_star(false, {}, round, star);
+  place_star(false, {}, round, star);
 }
 
-Index PatchMesh::place_star(bool closed, std::span<const Index> faces, std::uint32_t round, std::vector<Index>& star) {
+void PatchMesh::place_star(bool closed, std::span<const Index> faces, std::uint32_t round, std::vector<Index>& star) {
   const auto vertex = static_cast<Index>(degree_.size());
   const std::size_t count = outer_.size();
   degree_.push_back(0);
@@ -78,7 +66,6 @@ Index PatchMesh::place_star(bool closed, std::span<const Index> faces, std::uint
     ++degree_[outer.from];
     ++degree_[outer.to];
   }
-  return vertex;
 }
 
 }  // namespace lodestone::detail

@@ -32,17 +32,17 @@ class PatchMesh {
 
   /// Replaces a patch by the star of a new vertex: `polygon` is its outer half-edges in order; those of an open patch
   /// begin behind the closing edge, which is not among them. `faces`: its faces, as many as the star needs are
-  /// appended. Returns the new vertex; the star's faces go to `star`.
-  Index refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, std::uint32_t round,
-               std::vector<Index>& star);
+  /// appended. The star's faces go to `star`.
+  void refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, std::uint32_t round,
+              std::vector<Index>& star);
   /// Puts a face with a new vertex onto a border half-edge.
-  Index add_ear(Index half, std::uint32_t round, std::vector<Index>& star);
+  void add_ear(Index half, std::uint32_t round, std::vector<Index>& star);
 
  private:
   struct Outer {
     Index from, to, twin;
   };
-  Index place_star(bool closed, std::span<const Index> faces, std::uint32_t round, std::vector<Index>& star);
+  void place_star(bool closed, std::span<const Index> faces, std::uint32_t round, std::vector<Index>& star);
 
   std::vector<Index> corners_;
   std::vector<Index> twins_;

@@ -28,13 +28,9 @@ constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
 
 int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(x)) + 1); }
 
-std::uint32_t hint(int value, int low, int step) {
-  return static_cast<std::uint32_t>(std::clamp((value - low) / step, 0, static_cast<int>(NumberCoder::kHints) - 1));
-}
+std::uint32_t hint(int value, int low, int step) { return bucket(value, low, step, NumberCoder::kHints); }
 
-Vec3i over_radius(const Vec3i& v, std::int64_t radius) {
-  return {v.x * kOne / radius, v.y * kOne / radius, v.z * kOne / radius};
-}
+Vec3i over_radius(const Vec3i& v, std::int64_t radius) { return v * kOne / radius; }
 
 /// A normal distribution of three coordinates, taken apart: each one's mean and variance given those before it.
 struct Coordinates {
@@ -150,7 +146,7 @@ void PointCoder::predict(bool closed) {
   for (int c = 0; c < 3; ++c)
     shift[c] += tangent_pulls_[size].predict(prediction_.tangent[static_cast<std::size_t>(c)]);
   const std::int64_t r = ring_.radius;
-  prediction_.point = ring_.mean + Vec3i{shift.x * r / kOne, shift.y * r / kOne, shift.z * r / kOne};
+  prediction_.point = ring_.mean + shift * r / kOne;
 }
 
 void PointCoder::predict_size() {

@@ -11,13 +11,11 @@ constexpr std::int64_t kLeastRadius = 16;  // a step of the grid
 }  // namespace
 
 Vec3i unit(Vec3i v) {
-  int shift = 0;
-  while (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) >> shift >= (std::int64_t{1} << 24)) ++shift;
-  v = {v.x >> shift, v.y >> shift, v.z >> shift};
+  shorten(v, 24);
   const std::int64_t length = square_root(squared(v));
   if (length == 0) return {};
   constexpr std::int64_t kOne = std::int64_t{1} << kUnitBits;
-  return {v.x * kOne / length, v.y * kOne / length, v.z * kOne / length};
+  return v * kOne / length;
 }
 
 void Ring::look(const PatchMesh& mesh, std::span<const Index> star, bool closed, std::span<const Vec3i> positions,

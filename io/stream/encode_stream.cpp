@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include <lodestone/core/detail/cancelled.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -227,7 +228,7 @@ class StreamWriter {
       LODESTONE_TRY(const auto columns, encoder.encode(bounds[i], bounds[i + 1]));
       add_chunk(columns, bounds[i], bounds[i + 1], encoder.face_count());
       const double done = static_cast<double>(bounds[i + 1]) / static_cast<double>(bounds.back());
-      if (!options_.progress.reach(done)) return fail(ErrorCode::Cancelled, "cancelled");
+      if (!options_.progress.reach(done)) return cancelled();
     }
     fill_header();
     std::vector<std::byte> out = write_stream_start(start_);

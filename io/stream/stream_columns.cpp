@@ -22,11 +22,6 @@ enum class BlockMode : std::uint8_t { Stored = 0, Run = 1, Zstd = 2 };
 
 constexpr std::size_t kMaxVarintBytes = 10;
 
-void append_varint(std::vector<std::byte>& out, std::uint64_t value) {
-  for (; value >= 0x80; value >>= 7) out.push_back(static_cast<std::byte>((value & 0x7f) | 0x80));
-  out.push_back(static_cast<std::byte>(value));
-}
-
 std::size_t plane_count(Coding coding) { return std::max<std::size_t>(1, static_cast<std::size_t>(coding)); }
 
 /// Lays one plane of a column out as bytes; the only plane of a Varint column is its text of digits.

@@ -124,7 +124,7 @@ namespace {
 /// Returns, for each corner, the face across its edge. An edge that several faces of broken data have belongs to the
 /// last of them, here as in any other decoder.
 std::vector<Index> find_neighbours(std::span<const Index> corners) {
-  const std::vector<HalfEdge> halves = sorted_edges(corners.size(), [&](Index corner) { return corners[corner]; });
+  const std::vector<HalfEdge> halves = sorted_edges(corners);
   std::vector<Index> neighbours(corners.size(), kNoIndex);
   for_each_edge(halves, [&](Edge edge) {
     std::array<Index, 2> last{kNoIndex, kNoIndex};  // by whether it is forward

@@ -88,8 +88,7 @@ std::vector<Bytes> lodestone::test::fuzz_seeds() {
       compact.grid_bits = dense_rounds > 0 ? 16 : 9;
       const auto stream = result ? encode_compact(result->mesh, compact) : fail(ErrorCode::Malformed, "");
       if (!stream) continue;
-      const auto* first = reinterpret_cast<const std::uint8_t*>(stream->bytes.data());
-      seeds.emplace_back(first, first + stream->bytes.size());
+      seeds.push_back(bytes_of(stream->bytes));
     }
   return seeds;
 }

@@ -22,8 +22,7 @@ std::vector<lodestone::test::Bytes> lodestone::test::fuzz_seeds() {
     options.draco = draco;
     const auto asset = encode_scene(*scene, std::span(&mesh, 1), options);
     if (!asset) continue;
-    const auto* first = reinterpret_cast<const std::uint8_t*>(asset->glb.data());
-    seeds.emplace_back(first, first + asset->glb.size());
+    seeds.push_back(bytes_of(asset->glb));
   }
   return seeds;
 }

@@ -66,8 +66,7 @@ std::vector<Bytes> lodestone::test::fuzz_seeds() {
     options.records_per_chunk = 12;
     const auto bytes = result ? encode_stream(result->mesh, options) : fail(ErrorCode::Malformed, "");
     if (!bytes) continue;
-    const auto* first = reinterpret_cast<const std::uint8_t*>(bytes->data());
-    seeds.emplace_back(first, first + bytes->size());
+    seeds.push_back(bytes_of(*bytes));
   }
   return seeds;
 }

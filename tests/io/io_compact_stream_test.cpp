@@ -266,7 +266,7 @@ TEST_CASE("a flipped bit anywhere in a compact stream is a named error, and so a
 TEST_CASE("meshes on one grid meet where they met") {
   CompactOptions options;
   options.grid_bits = 10;
-  options.grid = PositionGrid{{-1, -1, -1}, 3};
+  options.grid = CompactGrid{{-1, -1, -1}, 3};
   const ProgressiveMesh left = progressive(grid(6, 0.1, 1));
   TriangleSoup beside = grid(6, 0.1, 1);
   for (Vec3f& p : beside.positions) p.x += 1;
@@ -293,7 +293,7 @@ TEST_CASE("options of compact streams out of range are refused") {
     CHECK(stream.error().code == ErrorCode::InvalidArgument);
   }
   CompactOptions options;
-  options.grid = PositionGrid{{0, 0, 0}, 0};
+  options.grid = CompactGrid{{0, 0, 0}, 0};
   CHECK(!encode_compact(mesh, options));
 }
 

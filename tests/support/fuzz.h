@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 // A fuzz target is a file tests/fuzz/NAME.cpp that defines LLVMFuzzerTestOneInput. libFuzzer drives it where
@@ -13,6 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 namespace lodestone::test {
 
 using Bytes = std::vector<std::uint8_t>;
+
+/// A copy of what the library wrote.
+inline Bytes bytes_of(std::span<const std::byte> written) {
+  const auto* first = reinterpret_cast<const std::uint8_t*>(written.data());
+  return {first, first + written.size()};
+}
 
 /// Returns valid inputs of the target to mutate. A target may define it; the replay has an empty one in reserve.
 std::vector<Bytes> fuzz_seeds();

@@ -13,7 +13,7 @@
 namespace lodestone {
 
 /// The cube whose grid positions are rounded to: equal for all meshes that must not come apart.
-struct PositionGrid {
+struct CompactGrid {
   Vec3f origin;     ///< its least corner
   float range = 1;  ///< its edge, > 0
 };
@@ -21,8 +21,8 @@ struct PositionGrid {
 /// Settings of a compact stream. docs/compact-stream.md describes the format, which is a draft: streams are not for
 /// keeping yet.
 struct CompactOptions {
-  int grid_bits = 14;                ///< positions become one of 2^this along each edge of the grid's cube, 8 to 16
-  std::optional<PositionGrid> grid;  ///< unset: the mesh's own box
+  int grid_bits = 14;               ///< positions become one of 2^this along each edge of the grid's cube, 8 to 16
+  std::optional<CompactGrid> grid;  ///< unset: the mesh's own box
 };
 
 /// What the parts of a compact stream take, in bits.
