@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/cancelled.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/scene.h>
@@ -186,7 +187,7 @@ Result<void> write(const BuildCommand& options, const Scene& scene, BuildReport&
   if (options.html) {
     LODESTONE_TRY(page, build_page(report, scene, writes_stream(options)));
   }
-  if (Interruption::is_wanted()) return fail(ErrorCode::Cancelled, "cancelled");
+  if (Interruption::is_wanted()) return detail::cancelled();
   return write_outputs(options, report, page);
 }
 

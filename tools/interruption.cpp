@@ -14,17 +14,17 @@ extern "C" void note_signal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+/// What is ignored, as under nohup, stays so.
+void handle_by(void (*handler)(int)) {
+  for (const int signal : {SIGINT, SIGTERM})
+    if (std::signal(signal, handler) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
 }  // namespace
 
-Interruption::Interruption() {
-  for (const int signal : {SIGINT, SIGTERM})
-    if (std::signal(signal, note_signal) == SIG_IGN) std::signal(signal, SIG_IGN);  // as under nohup
-}
+Interruption::Interruption() { handle_by(note_signal); }
 
-Interruption::~Interruption() {
-  for (const int signal : {SIGINT, SIGTERM})
-    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
-}
+Interruption::~Interruption() { handle_by(SIG_DFL); }
 
 bool Interruption::is_wanted() { return asked_by != 0; }
 

@@ -91,7 +91,7 @@ TriangleSoup parametric(int columns, int rows, bool closed, const SurfacePoint& 
       const double du = closed || (i > 0 && i < columns) ? jitter(id, 1) / 3 : 0;
       const double dv = closed || (j > 0 && j < rows) ? jitter(id, 2) / 3 : 0;
       const Vec3 p = point((i + du) / columns, (j + dv) / rows);
-      soup.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+      soup.positions.push_back(to_float(p));
     }
   }
   const auto at = [&](int i, int j) { return static_cast<Index>((j % height) * width + i % width); };

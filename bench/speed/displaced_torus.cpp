@@ -83,7 +83,7 @@ TriangleSoup displaced_torus(std::size_t faces) {
       const double u = static_cast<double>(i) + kJitter * random_at(i, j, 1);
       const double v = static_cast<double>(j) + kJitter * random_at(i, j, 2);
       const Vec3 p = point_at(u / static_cast<double>(columns), v / static_cast<double>(rows));
-      soup.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+      soup.positions.push_back(to_float(p));
     }
   }
   const auto at = [&](long i, long j) { return static_cast<Index>(j % rows * columns + i % columns); };

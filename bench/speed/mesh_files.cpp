@@ -8,6 +8,8 @@
 
 #include <lodestone/io/write_mesh.h>
 
+#include "mesh/soup_file.h"
+
 namespace lodestone::bench {
 namespace {
 
@@ -81,11 +83,6 @@ std::vector<std::byte> stl_bytes(const Mesh& mesh) {
   return out;
 }
 
-Attribute attribute_of(const char* name, std::uint8_t component_count, const std::vector<float>& values) {
-  const auto bytes = std::as_bytes(std::span(values));
-  return {name, ComponentType::Float32, component_count, false, {bytes.begin(), bytes.end()}};
-}
-
 }  // namespace
 
 std::vector<std::byte> file_bytes(const Mesh& mesh, const std::string& format) {
@@ -105,7 +102,7 @@ Mesh with_attributes(const Mesh& mesh) {
     texcoords.push_back(static_cast<float>(std::abs(normal.y)));
   }
   Mesh out = mesh;
-  out.attributes = {attribute_of("NORMAL", 3, normals), attribute_of("TEXCOORD_0", 2, texcoords)};
+  out.attributes = {detail::float_attribute("NORMAL", 3, normals), detail::float_attribute("TEXCOORD_0", 2, texcoords)};
   return out;
 }
 

@@ -1,19 +1,13 @@
 #include <lodestone/core/detail/edges.h>
 
 #include <algorithm>
-#include <utility>
+#include <numeric>
 
 namespace lodestone::detail {
 namespace {
 
 // Where ends are numbered so sparsely, a bucket for each number costs more than comparisons do.
 constexpr std::size_t kMostBuckets = 4;  // for a half
-
-/// Turns how many each bucket holds into where it begins.
-void begin_buckets(std::vector<Index>& counts) {
-  Index sum = 0;
-  for (Index& count : counts) sum += std::exchange(count, sum);
-}
 
 /// Sorts halves by the larger end, then by the smaller one, in linear time and without a comparison: what is equal
 /// stays in its order. Pre: ends are below `bucket_count`.
@@ -30,8 +24,9 @@ std::vector<HalfEdge> sorted_by_buckets(std::span<const Index> ends, std::size_t
     ++next_low[std::min(from, to)];
     ++next_high[std::max(from, to)];
   });
-  begin_buckets(next_low);
-  begin_buckets(next_high);
+  // How many each bucket holds becomes where it begins.
+  for (std::vector<Index>* next : {&next_low, &next_high})
+    std::exclusive_scan(next->begin(), next->end(), next->begin(), Index{0});
   std::vector<Index> by_high(ends.size());
   for_each_half([&](Index from, Index to, std::size_t corner) {
     by_high[next_high[std::max(from, to)]++] = static_cast<Index>(corner);
@@ -44,14 +39,12 @@ std::vector<HalfEdge> sorted_by_buckets(std::span<const Index> ends, std::size_t
   return sorted;
 }
 
-void sort_by_comparing(std::vector<HalfEdge>& halves) {
+}  // namespace
+
+void sort_edges(std::vector<HalfEdge>& halves) {
   std::sort(halves.begin(), halves.end(),
             [](const HalfEdge& a, const HalfEdge& b) { return a.key != b.key ? a.key < b.key : a.corner < b.corner; });
 }
-
-}  // namespace
-
-void sort_edges(std::vector<HalfEdge>& halves) { sort_by_comparing(halves); }
 
 std::vector<HalfEdge> sorted_edges(std::span<const Index> ends) {
   std::size_t bucket_count = 0;
@@ -60,7 +53,7 @@ std::vector<HalfEdge> sorted_edges(std::span<const Index> ends) {
   std::vector<HalfEdge> halves;
   halves.reserve(ends.size());
   for (Index c = 0; c < ends.size(); ++c) halves.emplace_back(ends[c], ends[next_corner(c)], c);
-  sort_by_comparing(halves);
+  sort_edges(halves);
   return halves;
 }
 

@@ -14,8 +14,6 @@ Vec3 apply_linear(const Transform& t, const Vec3& v) {
 
 }  // namespace
 
-Vec3f to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
-
 Transform operator*(const Transform& a, const Transform& b) {
   Transform product;
   for (int i = 0; i < 3; ++i)

@@ -28,9 +28,6 @@ struct Transform {
   Vec3f normal(const Vec3f& n) const;
 };
 
-/// Rounds to what is stored.
-Vec3f to_float(const Vec3& v);
-
 /// Returns translation · rotation · scale; the rotation is a quaternion x, y, z, w.
 Transform from_trs(const Vec3& translation, const std::array<double, 4>& rotation, const Vec3& scale);
 

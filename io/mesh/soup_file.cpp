@@ -15,8 +15,7 @@ namespace {
 constexpr double kUnitTolerance = 1e-3;  // Four decimals in a text file stay within it, a scaled normal does not.
 
 void store_unit(Attribute& normals, std::size_t point, const Vec3& direction) {
-  const Vec3 unit = normalized(direction);
-  const Vec3f stored{static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
+  const Vec3f stored = to_float(normalized(direction));
   std::memcpy(normals.data.data() + point * sizeof stored, &stored, sizeof stored);
 }
 

@@ -19,10 +19,7 @@ std::size_t next_cut(std::string_view text, std::size_t from) {
   }
 }
 
-bool is_blank_line(std::string_view line) {
-  while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
-  return line.empty();
-}
+bool is_blank_line(std::string_view line) { return next_token(line).empty(); }
 
 std::size_t count_rows(std::string_view text) {
   std::size_t count = 0;

@@ -152,7 +152,8 @@ class GeometryWriter {
   PrimitiveGeometry write_draco(const SourcePrimitive& primitive, const FacesOfMaterial& group,
                                 const Result<DracoOutput>& output) {
     if (!output) return write_uncompressed(primitive, group, output.error().message);
-    const Mesh mesh = submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive));
+    Mesh mesh;  // of which targets alone are not in Draco data
+    if (primitive.target_count > 0) mesh = submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive));
     PrimitiveGeometry geometry = describe_draco(primitive, output->encoded, output->decoded);
     geometry.targets = write_targets(primitive, mesh);
     if (options_.keep_decoded) note_decoded(primitive, group.material, decoded_mesh(primitive, output->decoded, mesh));
@@ -166,13 +167,17 @@ class GeometryWriter {
     return write_plain(primitive, group);
   }
 
-  /// Returns what a client gets of a primitive: targets as they were, the rest out of Draco data.
+  /// Returns what a client gets of a primitive: targets as they were in `encoded`, the rest out of Draco data.
   Mesh decoded_mesh(const SourcePrimitive& primitive, const DracoGeometry& decoded, const Mesh& encoded) const {
     Mesh mesh = decoded_surface(decoded);
-    mesh.attributes = encoded.attributes;
     std::size_t next = 0;
-    for (std::size_t i = 0; i < primitive.columns.size(); ++i)
-      if (!source_.columns[primitive.columns[i]].target) mesh.attributes[i].data = decoded.attributes[++next].bytes;
+    for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
+      const std::size_t column = primitive.columns[i];
+      const Attribute& a = *level_.columns[column];
+      const bool is_target = source_.columns[column].target.has_value();
+      mesh.attributes.push_back({a.name, a.type, a.component_count, a.normalized,
+                                 is_target ? encoded.attributes[i].data : decoded.attributes[++next].bytes});
+    }
     return mesh;
   }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include <lodestone/core/detail/cancelled.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/scene.h>
@@ -194,7 +195,7 @@ class SceneWriter {
       }
     const Progress progress = options_.progress.part(kEncodingShare);
     std::vector<EncodedLevel> encoded = encode_levels(levels, options_, progress);
-    if (!progress.reach(1)) return fail(ErrorCode::Cancelled, "cancelled");
+    if (!progress.reach(1)) return cancelled();
     for (std::size_t i = 0; i < to.size(); ++i) *to[i] = std::move(encoded[i]);
     return {};
   }
@@ -220,7 +221,7 @@ class SceneWriter {
         for (const std::string& note : written.notes) add_note(note);
       }
       if (!options_.progress.add((1 - kEncodingShare) / static_cast<double>(range_.count * meshes_.size())))
-        return fail(ErrorCode::Cancelled, "cancelled");
+        return cancelled();
       layout.geometry_bytes += written.byte_count;
       collapsed_[level] += written.collapsed_face_count * scene_.meshes()[mesh].instance_count;
       layout.face_count += written.face_count * scene_.meshes()[mesh].instance_count;

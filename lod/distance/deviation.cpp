@@ -43,7 +43,7 @@ using detail::SurfaceBounds;
 constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's default.
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
 constexpr double kLeastFaceShare = 0.125;
-constexpr std::size_t kSamplesOfStep = 1024;  // Between two words about the progress.
+constexpr std::size_t kSamplesOfStep = 1024;  // Looked up together, between two words about the progress.
 constexpr double kMeansShare = 0.4;           // Of the work, each way; the maximum takes the rest.
 constexpr double kLeastWidth = 1.2;  // Of an edge's faces, in steps; an edge of narrower ones gets fewer samples.
 
@@ -203,7 +203,7 @@ class Tally {
   /// Looks up the samples, those of neighbouring faces together, and adds up what is found; stops where the work is
   /// cancelled.
   void finish(ProgressSteps& steps) {
-    const std::vector<Index> order = compact_order();
+    const std::vector<Index> order = along_surface();
     std::vector<Vec3> points;
     std::vector<SurfaceIndex::Hit> hits;
     for (std::size_t first = 0; first < order.size(); first += points.size()) {
@@ -231,7 +231,7 @@ class Tally {
     if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_.mesh, face), to_faces_->as_near_as(hit));
   }
   /// The samples by their faces, such that those of neighbours are near each other, and those of a face along a curve.
-  std::vector<Index> compact_order() const {
+  std::vector<Index> along_surface() const {
     const std::span<const Index> ranks = from_.index.ranks();
     const detail::MortonCurve curve(bounding_box(from_.mesh));
     std::vector<std::pair<std::uint64_t, Index>> keys(count());

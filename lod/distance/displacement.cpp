@@ -159,16 +159,13 @@ double overlay_displacement(const Overlay& overlay) {
   return largest;
 }
 
-/// A ring position as the mesh has it: the conversion back is exact.
-Vec3f stored(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
-
 /// The point of the coarse faces nearest to the centre.
 Vec3 nearest_coarse_point(const Overlay& overlay) {
   Vec3 nearest;
   double best = std::numeric_limits<double>::infinity();
   for (const PolygonTriangle t : overlay.triangles) {
     const Vec3 p = nearest_on_triangle(
-        overlay.center, {stored(overlay.ring[t.a]), stored(overlay.ring[t.b]), stored(overlay.ring[t.c])});
+        overlay.center, {to_float(overlay.ring[t.a]), to_float(overlay.ring[t.b]), to_float(overlay.ring[t.c])});
     if (squared_length(p - overlay.center) < best) best = squared_length(p - overlay.center), nearest = p;
   }
   return nearest;

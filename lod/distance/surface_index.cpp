@@ -179,8 +179,6 @@ std::size_t hash_of(const Triangle& triangle) {
 
 Vec3 point(const Local& p) { return {p[0], p[1], p[2]}; }
 
-Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
-
 /// `axes` in the mesh's coordinates; `scale` is what lengths are multiplied by.
 Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes, double scale) {
   const Vec3 u = axes[0] * scale, v = axes[1] * scale, w = axes[2] * scale;
@@ -199,7 +197,7 @@ struct SurfaceIndex::Impl {
   double scale = 1;                      // A power of two, which makes the mesh's box about 1 large.
   Box box;                               // Of the mesh.
 
-  void set_scale(const Mesh& mesh);
+  void set_box(const Mesh& mesh);
   Vec3 cut_off(const Vec3& p) const;
   double reach(double squared) const;
   void order_faces(const Mesh& mesh);
@@ -429,7 +427,7 @@ class PacketSearch {
 
 }  // namespace
 
-void SurfaceIndex::Impl::set_scale(const Mesh& mesh) {
+void SurfaceIndex::Impl::set_box(const Mesh& mesh) {
   box = bounding_box(mesh);
   const double size = box.diagonal();
   if (size > 0 && std::isfinite(size)) scale = std::ldexp(1.0, -std::ilogb(size));
@@ -523,7 +521,7 @@ void SurfaceIndex::Impl::add_level(std::size_t child_size, std::size_t child_cou
 Node SurfaceIndex::Impl::make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children,
                                    const Run& all) const {
   Node node;
-  const Vec3f origin = rounded(all.spread.mean);
+  const Vec3f origin = to_float(all.spread.mean);
   node.frame = make_frame(origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale);
   ChildExtents extents;
   for (std::size_t i = 0; i < children.size(); ++i) {
@@ -558,7 +556,7 @@ ChildExtents SurfaceIndex::Impl::child_extents(const Frame& frame, std::size_t b
 
 SurfaceIndex::SurfaceIndex(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
   if (mesh.face_count() == 0) return;
-  impl_->set_scale(mesh);
+  impl_->set_box(mesh);
   impl_->order_faces(mesh);
   impl_->build_nodes();
 }
@@ -567,17 +565,16 @@ SurfaceIndex::~SurfaceIndex() = default;
 SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
 SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 
-[[gnu::flatten]] LODESTONE_WIDE_VECTORS SurfaceIndex::Hit SurfaceIndex::nearest(const Vec3& p, double limit,
-                                                                                Index hint) const {
-  Search search(*impl_, p, limit);
-  if (empty()) return search.result();
-  assert(hint == kNoIndex || hint < impl_->places.size());
-  if (hint != kNoIndex) search.test(impl_->places[hint]);
+namespace {
+
+/// `hint` is a face likely near p, or kNoIndex.
+SurfaceIndex::Hit search_one(const SurfaceIndex::Impl& tree, const Vec3& p, double limit, Index hint) {
+  Search search(tree, p, limit);
+  if (tree.triangles.empty()) return search.result();
+  if (hint != kNoIndex) search.test(tree.places[hint]);
   search.descend();
   return search.result();
 }
-
-namespace {
 
 /// Searches for at most PacketSearch::kPoints points: at once where they lie within `together` of the first, since what
 /// is the best way through the tree for one is so for all then; else one by one. The faces of hits are hints on entry.
@@ -586,12 +583,8 @@ void search_packet(const SurfaceIndex::Impl& tree, std::span<const Vec3> points,
   const auto place_of = [&](Index face) { return face != kNoIndex ? tree.places[face] : kNoIndex; };
   const auto is_far = [&](const Vec3& p) { return !(length(p - points.front()) <= together); };
   if (std::any_of(points.begin(), points.end(), is_far)) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Search search(tree, points[i], std::numeric_limits<double>::infinity());
-      if (hits[i].face != kNoIndex) search.test(place_of(hits[i].face));
-      search.descend();
-      hits[i] = search.result();
-    }
+    for (std::size_t i = 0; i < points.size(); ++i)
+      hits[i] = search_one(tree, points[i], std::numeric_limits<double>::infinity(), hits[i].face);
     return;
   }
   PacketSearch search(tree);
@@ -601,6 +594,12 @@ void search_packet(const SurfaceIndex::Impl& tree, std::span<const Vec3> points,
 }
 
 }  // namespace
+
+[[gnu::flatten]] LODESTONE_WIDE_VECTORS SurfaceIndex::Hit SurfaceIndex::nearest(const Vec3& p, double limit,
+                                                                                Index hint) const {
+  assert(hint == kNoIndex || hint < impl_->places.size());
+  return search_one(*impl_, p, limit, hint);
+}
 
 [[gnu::flatten]] LODESTONE_WIDE_VECTORS void SurfaceIndex::nearest(std::span<const Vec3> points,
                                                                    std::span<Hit> hits) const {

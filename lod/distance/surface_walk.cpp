@@ -22,10 +22,9 @@ constexpr int kMostSteps = 32;  // over edges that a point lies beyond, before d
 
 SurfaceWalk::SurfaceWalk(const Mesh& mesh) : place_(mesh.corner_wedge.size()), across_(mesh.corner_wedge.size()) {
   const std::vector<Index> place_of_vertex = places_of(mesh.positions);
-  const auto place_of = [&](Index corner) { return place_[corner]; };
   for (Index c = 0; c < place_.size(); ++c) place_[c] = place_of_vertex[mesh.corner_vertex(c)];
-  corners_ = Grouping(mesh.vertex_count(), place_.size(), place_of);
-  for_each_edge(sorted_edges(place_.size(), place_of), [&](Edge edge) {
+  corners_ = Grouping(mesh.vertex_count(), place_.size(), [&](Index corner) { return place_[corner]; });
+  for_each_edge(sorted_edges(place_), [&](Edge edge) {
     for (std::size_t i = 0; i < edge.size(); ++i) across_[edge[i].corner] = edge[(i + 1) % edge.size()].corner;
   });
   update(mesh);

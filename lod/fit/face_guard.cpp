@@ -19,8 +19,6 @@ double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
-Vec3f rounded(const Vec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
-
 bool keeps_direction(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before) {
   const Vec3 normal = cross(b - a, c - a);
   return dot(normal, before) > kMinCosine * length(normal) * length(before);
@@ -118,7 +116,7 @@ OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) con
 /// `near` is a face of the original near there, if known.
 OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near, Distances* inside) const {
   const auto& [a, b, c] = corners;
-  Standing result{{rounded(a), rounded(b), rounded(c)}, 0, -1, near};
+  Standing result{{to_float(a), to_float(b), to_float(c)}, 0, -1, near};
   if (!steps_.next()) return result;
   const auto visit = [&](const Vec3& point) {
     const Nearest found = nearest(point, result.near);

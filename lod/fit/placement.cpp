@@ -50,7 +50,7 @@ constexpr double kRoam = 1.25;       // how far out of the original's box, of th
 constexpr double kFineShare = 0.3;
 constexpr double kSoftening = 0.1;
 
-constexpr std::size_t kSamplesOfStep = 1024;  // between two words about the progress
+constexpr std::size_t kSamplesOfStep = 1024;  // looked up together, between two words about the progress
 constexpr double kFirstShare = 0.2;           // of the work: to find where each sample belongs
 
 // What a level is worth, by effort. Edges are turned in the first iterations, and the vertices follow. Large levels
@@ -90,8 +90,6 @@ Effort effort_for(int wanted, std::size_t sample_count) {
 constexpr std::size_t kCheckedPoints = 50'000;
 constexpr std::size_t kFewestOfFace = 3;
 constexpr std::size_t kMostOfFace = 12;
-
-constexpr std::size_t kSearchedTogether = 1024;
 
 /// Which of a level's vertices lie where fixed ones of the original do.
 std::vector<std::uint8_t> find_fixed(const Mesh& original, const Mesh& level,
@@ -232,8 +230,8 @@ void Fitting::search(double squared_distance) {
     if (sample.face == kNoIndex || sample.squared_distance >= squared_distance) samples.push_back(&sample);
   std::vector<Vec3> points;
   std::vector<SurfaceIndex::Hit> hits;
-  for (std::size_t first = 0; first < samples.size(); first += kSearchedTogether) {
-    const auto together = std::span(samples).subspan(first, std::min(samples.size() - first, kSearchedTogether));
+  for (std::size_t first = 0; first < samples.size(); first += kSamplesOfStep) {
+    const auto together = std::span(samples).subspan(first, std::min(samples.size() - first, kSamplesOfStep));
     points.clear();
     hits.clear();
     for (const SurfaceSample* sample : together) {
@@ -399,8 +397,7 @@ void Fitting::move() {
   if (!goes_on()) return;
   keep_in_box(moved);
   std::vector<Vec3f> positions;
-  for (const Vec3& p : moved)
-    positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+  for (const Vec3& p : moved) positions.push_back(to_float(p));
   for (Index v = 0; v < positions.size(); ++v)
     if (fixed_[v] != 0) positions[v] = level_.positions[v];
   do {
@@ -437,7 +434,7 @@ double Fitting::forward_error() {
                                          original.corner_position(3 * f + 2), k + 1));
       shares.push_back(share);
     }
-    if (points.size() >= kSearchedTogether) add_up();
+    if (points.size() >= kSamplesOfStep) add_up();
   }
   add_up();
   return sum;

@@ -7,8 +7,7 @@ CarriedPoints::CarriedPoints(const Mesh& mesh) : first_(mesh.face_count(), kNoIn
   for (const Vec3f& position : mesh.positions) points_.push_back({position});
   for (Index f = 0; f < mesh.face_count(); ++f) {
     const Vec3 sum = mesh.corner_position(3 * f) + mesh.corner_position(3 * f + 1) + mesh.corner_position(3 * f + 2);
-    const Vec3 c = sum * (1.0 / 3);
-    points_.push_back({{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}});
+    points_.push_back({to_float(sum * (1.0 / 3))});
     add(f, static_cast<Index>(points_.size() - 1));
   }
 }

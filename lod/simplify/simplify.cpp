@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <lodestone/core/detail/index_limit.h>
 #include <lodestone/core/detail/text.h>
@@ -97,6 +98,7 @@ class Simplifier {
   void evaluate(std::span<const Index> vertices, const Progress& progress);
   void evaluate(RemovalEvaluator& evaluator, Index vertex);
   bool choose_candidates();
+  void drop_dearer(std::vector<Index>& vertices);
   void choose_dense();
   void pick_round();
   bool run_round();
@@ -146,9 +148,9 @@ class Simplifier {
   std::vector<Index> standing_;      // sites that are left, ascending, and some that have gone
   std::vector<Index> candidates_;
   DenseRound dense_;
-  std::vector<Index> within_;             // its limit: candidates of a dense round
-  std::vector<Index> picks_, postponed_;  // of a dense round: whose turn it is, and who is next
-  std::vector<Index> claimed_;            // by vertex: the round that last claimed it, + 1
+  std::vector<Index> within_;     // its limit: candidates of a dense round
+  std::vector<Index> postponed_;  // of a dense round: whose turn is next
+  std::vector<Index> claimed_;    // by vertex: the round that last claimed it, + 1
   std::vector<Index> dirty_;
   std::vector<Index> bent_;  // vertices around removals after which K̄ is not known yet
   std::vector<Index> looked_at_;
@@ -233,14 +235,18 @@ bool Simplifier::choose_candidates() {
   const bool any_free = std::any_of(candidates_.begin(), last, [&](Index v) { return cost_[v] == 0; });
   limit_ = any_free ? 0 : cost_[*last];
   candidates_.resize(count);
-  looked_at_.clear();
-  for (const Index v : candidates_)
-    if (stale_[v] != 0) looked_at_.push_back(v);
-  evaluate(looked_at_, within_round_);
-  candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), [&](Index v) { return cost_[v] > limit_; }),
-                    candidates_.end());
+  drop_dearer(candidates_);
   std::sort(candidates_.begin(), candidates_.end(), cheaper);
   return true;
+}
+
+/// Evaluates anew what is stale, and leaves out what costs more than the limit.
+void Simplifier::drop_dearer(std::vector<Index>& vertices) {
+  looked_at_.clear();
+  for (const Index v : vertices)
+    if (stale_[v] != 0) looked_at_.push_back(v);
+  evaluate(looked_at_, within_round_);
+  std::erase_if(vertices, [&](Index v) { return cost_[v] > limit_; });
 }
 
 /// Replaces `candidates_`, all that can go, by those picked for a dense round whose turn has not come; rings that meet
@@ -250,15 +256,16 @@ void Simplifier::choose_dense() {
     std::erase_if(vertices, [&](Index v) { return !state_.connectivity.has_vertex(v) || cost_[v] == kIllegal; });
   };
   for (;;) {
-    std::swap(picks_, postponed_);
-    postponed_.clear();
-    drop_illegal(picks_);
-    if (!picks_.empty()) break;
+    std::vector<Index> turn = std::exchange(postponed_, {});
+    drop_illegal(turn);
+    if (!turn.empty()) {
+      candidates_ = std::move(turn);
+      return;
+    }
     drop_illegal(candidates_);
     if (candidates_.empty()) return;
     pick_round();
   }
-  candidates_ = picks_;
 }
 
 /// Picks a round among `candidates_` and postpones all of it; none where costs have risen above what they were.
@@ -271,11 +278,7 @@ void Simplifier::pick_round() {
   within_.clear();
   for (const Index v : candidates_)
     if (cost_[v] <= limit_) within_.push_back(v);
-  looked_at_.clear();
-  for (const Index v : within_)
-    if (stale_[v] != 0) looked_at_.push_back(v);
-  evaluate(looked_at_, within_round_);
-  std::erase_if(within_, [&](Index v) { return cost_[v] > limit_; });
+  drop_dearer(within_);
   postponed_ = dense_.pick(state_.connectivity, within_, cost_);
 }
 
@@ -547,6 +550,7 @@ void Simplifier::stop_removing() {
   state_.points = CarriedPoints(Mesh());
   free(state_.lines, state_.curvature, state_.original_curvature);
   free(cost_, verdict_, choice_, stale_, standing_, candidates_, claimed_, dirty_, bent_, looked_at_, batch_);
+  free(dense_, within_, postponed_);
 }
 
 BlockedCounts Simplifier::count_blocked() const {

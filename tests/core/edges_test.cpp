@@ -23,7 +23,7 @@ TEST_CASE("edges come by their ends, each with all of its halves by corner, howe
   std::map<std::pair<Index, Index>, std::vector<Index>> expected;
   for (Index c = 0; c < corners.size(); ++c) expected[std::minmax(corners[c], corners[next_corner(c)])].push_back(c);
 
-  const std::vector<HalfEdge> halves = sorted_edges(corners.size(), [&](Index corner) { return corners[corner]; });
+  const std::vector<HalfEdge> halves = sorted_edges(corners);
   auto next = expected.begin();
   for_each_edge(halves, [&](Edge edge) {
     REQUIRE(next != expected.end());

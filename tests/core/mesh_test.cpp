@@ -39,7 +39,7 @@ std::vector<Index> random_faces(const Mesh& mesh, Random& random) {
 void move_points(Mesh& mesh, double scale, const Vec3& offset) {
   for (Vec3f& p : mesh.positions) {
     const Vec3 q = Vec3(p) * scale + offset;
-    p = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+    p = to_float(q);
   }
 }
 

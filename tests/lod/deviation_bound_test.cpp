@@ -108,7 +108,7 @@ void move_points(TriangleSoup& soup, Move move) {
     const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x + 0.0F)}; };
     Random noise(bits(p.x) * 0x9e3779b97f4a7c15u ^ bits(p.y) * 0xc2b2ae3d27d4eb4fu ^ bits(p.z) << 20);
     const Vec3 q = move(Vec3(p), noise);
-    p = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+    p = to_float(q);
   }
 }
 
@@ -161,7 +161,7 @@ void repeat(TriangleSoup& soup, Random& random) {
   const std::size_t corners = soup.indices.size();
   for (Index i = 0; i < count; ++i) {
     const Vec3 p = Vec3(soup.positions[i]) * size + shift;
-    soup.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    soup.positions.push_back(to_float(p));
   }
   for (Attribute& a : soup.attributes) {
     const std::vector<std::byte> once = a.data;

@@ -380,7 +380,7 @@ TriangleSoup askew(TriangleSoup soup) {
   const Vec3 z = cross(x, y);
   for (Vec3f& p : soup.positions) {
     const Vec3 q = x * static_cast<double>(p.x) + y * static_cast<double>(p.y) + z * static_cast<double>(p.z);
-    p = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+    p = to_float(q);
   }
   return soup;
 }

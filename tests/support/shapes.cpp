@@ -215,7 +215,7 @@ TriangleSoup icosphere(int subdivisions, double noise, std::uint64_t seed) {
   Random random(seed);
   for (Vec3f& p : soup.positions) {
     const Vec3 moved = Vec3(p) * (1 + noise * random.signed_unit());
-    p = {static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z)};
+    p = to_float(moved);
   }
   return soup;
 }

@@ -45,6 +45,11 @@ inline bool has_direction(const Vec3& a) {
   return std::isfinite(l) && l > 0;
 }
 
+/// Returns a point or direction as it is stored, rounded.
+inline Vec3f to_float(const Vec3& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
 /// Returns `a` scaled to length 1, or the zero vector where `a` has no direction.
 inline Vec3 normalized(const Vec3& a) {
   const double l = length(a);
