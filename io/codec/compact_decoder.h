@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <lodestone/core/result.h>
+#include <lodestone/lod/progressive_mesh.h>
+
+#include "codec/bit_coder.h"
+#include "codec/compact_layout.h"
+#include "codec/level_coder.h"
+
+namespace lodestone::detail {
+
+/// Builds a progressive mesh chunk by chunk, each in one go. After each the mesh is whole: valid, its last position the
+/// level that the chunk leads to. What is there already never changes, but for the faces of groups and the room of
+/// arrays.
+class CompactDecoder {
+ public:
+  explicit CompactDecoder(CompactHeader header);
+
+  const CompactHeader& header() const { return header_; }
+  /// How many chunks have been added.
+  std::size_t chunk_count() const { return chunk_count_; }
+  /// Whether all chunks have been added.
+  bool done() const { return chunk_count_ == header_.chunks.size(); }
+
+  /// Adds the next chunk. After an error the mesh is what it was before, and no chunk can be added any more: the models
+  /// are not. Pre: not done(), no error before. Errors: Malformed, LimitExceeded.
+  Result<void> add_chunk(std::span<const std::byte> bytes);
+
+  /// Pre: a chunk has been added; without one it has nothing.
+  const ProgressiveMesh& mesh() const { return mesh_; }
+  ProgressiveMesh take() { return std::move(mesh_); }
+
+ private:
+  Result<void> read_chunk(const CompactChunkEntry& chunk, std::span<const std::byte> bytes);
+  Result<void> read_base(BitCoder& coder);
+  Result<void> read_round(BitCoder& coder);
+  Result<void> read_errors(BitCoder& coder);
+  void add_position(const Vec3i& position);
+  void add_record(std::size_t i);
+  void add_triangles(std::size_t i, std::span<const Index> polygon);
+
+  CompactHeader header_;
+  std::size_t chunk_count_ = 0;
+  LevelCoder levels_;
+  ErrorCoder errors_;
+  std::uint64_t faces_left_;  // that walks may still visit
+  int deviation_code_ = 0;
+  ProgressiveMesh mesh_;
+};
+
+}  // namespace lodestone::detail
