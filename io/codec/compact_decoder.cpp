@@ -8,8 +8,6 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
-#include "stream/mesh_mark.h"
-
 namespace lodestone::detail {
 namespace {
 
@@ -17,10 +15,12 @@ auto broken(const std::string& message) { return fail(ErrorCode::Malformed, mess
 
 }  // namespace
 
-CompactDecoder::CompactDecoder(CompactHeader header)
+CompactDecoder::CompactDecoder(CompactHeader header, ProgressiveMesh& mesh, std::uint64_t most_bytes)
     : header_(std::move(header)),
       levels_(header_.grid_bits),
-      faces_left_(kMostFacesWalked * (header_.face_count() + 1)) {}
+      faces_left_(kMostFacesWalked * (header_.face_count() + 1)),
+      mesh_(mesh),
+      most_bytes_(most_bytes) {}
 
 /// Reads the errors of the last position.
 Result<void> CompactDecoder::read_errors(BitCoder& coder) {
@@ -114,6 +114,7 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
   if (!levels_.code_points(coder, {})) return broken("a position lies off the grid");
   for (std::size_t i = 0; i < levels_.round().vertices.size(); ++i) add_record(i);
   mesh_.round_begin.push_back(static_cast<Index>(mesh_.record_count()));
+  LODESTONE_CHECK(check_held_bytes(mesh_, most_bytes_));
   return read_errors(coder);
 }
 

@@ -10,6 +10,7 @@
 #include "codec/bit_coder.h"
 #include "codec/compact_layout.h"
 #include "codec/level_coder.h"
+#include "stream/growing_mesh.h"
 
 namespace lodestone::detail {
 
@@ -18,7 +19,8 @@ namespace lodestone::detail {
 /// arrays.
 class CompactDecoder {
  public:
-  explicit CompactDecoder(CompactHeader header);
+  /// Pre: `mesh` is empty and outlives the decoder. It may take `most_bytes`; more is an error.
+  CompactDecoder(CompactHeader header, ProgressiveMesh& mesh, std::uint64_t most_bytes = kNoLimit);
 
   const CompactHeader& header() const { return header_; }
   /// How many chunks have been added.
@@ -29,10 +31,6 @@ class CompactDecoder {
   /// Adds the next chunk. After an error the mesh is what it was before, and no chunk can be added any more: the models
   /// are not. Pre: not done(), no error before. Errors: Malformed, LimitExceeded.
   Result<void> add_chunk(std::span<const std::byte> bytes);
-
-  /// Pre: a chunk has been added; without one it has nothing.
-  const ProgressiveMesh& mesh() const { return mesh_; }
-  ProgressiveMesh take() { return std::move(mesh_); }
 
  private:
   Result<void> read_chunk(const CompactChunkEntry& chunk, std::span<const std::byte> bytes);
@@ -49,7 +47,8 @@ class CompactDecoder {
   ErrorCoder errors_;
   std::uint64_t faces_left_;  // that walks may still visit
   int deviation_code_ = 0;
-  ProgressiveMesh mesh_;
+  ProgressiveMesh& mesh_;
+  std::uint64_t most_bytes_;
 };
 
 }  // namespace lodestone::detail

@@ -41,10 +41,11 @@ Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) {
   auto header = detail::read_compact_header(bytes);
   if (!header) return in_stream(header.error(), 0);
   std::uint64_t offset = header->header_bytes;
-  detail::CompactDecoder decoder(std::move(*header));
+  ProgressiveMesh mesh;
+  detail::CompactDecoder decoder(std::move(*header), mesh);
   for (std::size_t i = 0; !decoder.done(); ++i) {
     const std::uint64_t length = decoder.header().chunks[i].byte_length, room = bytes.size() - offset;
-    if (room == 0 && i > 0) return decoder.take();  // a prefix: the level so far is complete
+    if (room == 0 && i > 0) return mesh;  // a prefix: the level so far is complete
     if (length > room)
       return in_stream({ErrorCode::Malformed, text("ends inside chunk ", i, ": ", room, " of ", length, " bytes"), {}},
                        bytes.size());
@@ -55,7 +56,7 @@ Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) {
   }
   if (offset < bytes.size())
     return in_stream({ErrorCode::Malformed, text(bytes.size() - offset, " bytes follow its end"), {}}, offset);
-  return decoder.take();
+  return mesh;
 }
 
 }  // namespace lodestone

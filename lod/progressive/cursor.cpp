@@ -28,8 +28,17 @@ std::size_t Cursor::face_count() const {
   return count;
 }
 
+/// A mesh that grows does so many times: by half at least, so that not every time all is moved.
+void Cursor::make_room() {
+  for (std::size_t g = 0; g < corners_.size(); ++g) {
+    const std::size_t wanted = 3 * std::size_t{mesh_->groups[g].face_count}, room = corners_[g].capacity();
+    if (wanted > room) corners_[g].reserve(std::max(wanted, room + room / 2));
+  }
+}
+
 void Cursor::seek(Index position) {
   position = std::min(position, static_cast<Index>(mesh_->record_count()));
+  if (position > position_) make_room();
   while (position_ < position) refine();
   while (position_ > position) coarsen();
 }

@@ -48,8 +48,8 @@ Result<std::vector<std::byte>> encode_stream(const ProgressiveMesh& mesh, const 
 /// Reads header and directory; the chunks need not be there yet.
 Result<StreamDirectory> read_stream_directory(std::span<const std::byte> bytes);
 
-/// Decodes a whole stream, or its first chunks where `bytes` ends early on a chunk boundary, and validates the result:
-/// bytes are hostile until then. Errors: Malformed, LimitExceeded, Unsupported (a newer major version), with offsets.
+/// Decodes a whole stream, or its first chunks where `bytes` ends early on a chunk boundary. The result is valid
+/// whatever the bytes. Errors: Malformed, LimitExceeded, Unsupported (a newer major version), with offsets.
 Result<ProgressiveMesh> decode_stream(std::span<const std::byte> bytes);
 
 }  // namespace lodestone

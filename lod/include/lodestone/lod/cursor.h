@@ -10,18 +10,19 @@ namespace lodestone {
 
 /// A position in the removal stream, with the index buffers of its level.
 ///
-/// Moves in both directions, one record at a time; allocates when it is made and never after. The level at a position
-/// does not depend on the way there: its bytes are the same after any sequence of moves.
+/// Moves in both directions, one record at a time; allocates when it is made, and after that only where the mesh has
+/// grown. The level at a position does not depend on the way there: its bytes are the same after any sequence of moves.
 class Cursor {
  public:
-  /// Starts at the base mesh. Pre: `mesh` is valid (see `validate`) and outlives the cursor.
+  /// Starts at the base mesh. Pre: `mesh` is valid (see `validate`) and outlives the cursor. Records may be appended to
+  /// it while the cursor stands anywhere: it is valid before and after, and what it had stays.
   explicit Cursor(const ProgressiveMesh& mesh);
 
   Index position() const { return position_; }
 
   /// Moves to `position`, clamped to record_count(). Cost: proportional to the records passed.
   void seek(Index position);
-  /// Applies the next record; pre: position() < record_count().
+  /// Applies the next record; pre: position() < record_count(). Allocates like a vector where the mesh has grown.
   void refine();
   /// Undoes the last record; pre: position() > 0.
   void coarsen();
@@ -33,6 +34,8 @@ class Cursor {
   std::span<const Index> corners(std::size_t group) const { return corners_[group]; }
 
  private:
+  void make_room();
+
   const ProgressiveMesh* mesh_;
   Index position_ = 0;
   std::vector<std::vector<Index>> corners_;

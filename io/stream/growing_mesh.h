@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include <lodestone/core/result.h>
 #include <lodestone/lod/progressive_mesh.h>
 
 namespace lodestone::detail {
@@ -25,5 +27,16 @@ class MeshMark {
   bool begun_;
   std::vector<Index> face_counts_;
 };
+
+/// Returns the bytes that a mesh's arrays take, with the room that they have to grow.
+std::uint64_t held_bytes(const ProgressiveMesh& mesh);
+
+inline constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
+
+/// Checks that they are no more than `most`. Errors: LimitExceeded.
+Result<void> check_held_bytes(const ProgressiveMesh& mesh, std::uint64_t most);
+
+/// Gives back that room.
+void trim(ProgressiveMesh& mesh);
 
 }  // namespace lodestone::detail
