@@ -132,6 +132,27 @@ std::uint64_t CompactHeader::face_count() const {
   return count;
 }
 
+std::vector<CompactChunk> compact_chunks(const CompactHeader& header) {
+  std::vector<CompactChunk> chunks;
+  std::uint64_t offset = header.header_bytes, faces = header.base_face_count;
+  Index record = 0;
+  for (const CompactChunkEntry& entry : header.chunks) {
+    CompactChunk chunk;
+    chunk.byte_offset = offset;
+    chunk.byte_length = entry.byte_length;
+    chunk.record_begin = record;
+    chunk.record_count = entry.record_count;
+    offset += entry.byte_length;
+    record += entry.record_count;
+    faces += entry.added_faces();
+    chunk.vertex_count = std::uint64_t{header.base_vertex_count} + record;
+    chunk.face_count = faces;
+    chunk.deviation = header.deviation.value(entry.deviation_code);
+    chunks.push_back(chunk);
+  }
+  return chunks;
+}
+
 std::vector<std::byte> write_compact_header(const CompactHeader& header) {
   std::vector<std::byte> out;
   for (const unsigned char c : kStreamMagic) out.push_back(std::byte{c});

@@ -65,6 +65,9 @@ struct CompactHeader {
   std::uint64_t face_count() const;
 };
 
+/// Returns where the chunks lie, and what they lead to.
+std::vector<CompactChunk> compact_chunks(const CompactHeader& header);
+
 /// Writes a header and its checksum.
 std::vector<std::byte> write_compact_header(const CompactHeader& header);
 /// Reads and checks a header: counts are within the limits that the chunks' lengths set.

@@ -14,24 +14,7 @@ using detail::text;
 
 Result<std::vector<CompactChunk>> read_compact_chunks(std::span<const std::byte> bytes) {
   LODESTONE_TRY(const detail::CompactHeader header, detail::read_compact_header(bytes));
-  std::vector<CompactChunk> chunks;
-  std::uint64_t offset = header.header_bytes, faces = header.base_face_count;
-  Index record = 0;
-  for (const detail::CompactChunkEntry& entry : header.chunks) {
-    CompactChunk chunk;
-    chunk.byte_offset = offset;
-    chunk.byte_length = entry.byte_length;
-    chunk.record_begin = record;
-    chunk.record_count = entry.record_count;
-    offset += entry.byte_length;
-    record += entry.record_count;
-    faces += entry.added_faces();
-    chunk.vertex_count = std::uint64_t{header.base_vertex_count} + record;
-    chunk.face_count = faces;
-    chunk.deviation = header.deviation.value(entry.deviation_code);
-    chunks.push_back(chunk);
-  }
-  return chunks;
+  return detail::compact_chunks(header);
 }
 
 Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) {

@@ -1,28 +1,45 @@
-// Draws from a removal stream with lodestone::stream alone: reads it, goes to levels of it, and prints their faces.
+// Draws from a stream with lodestone::stream alone, while it arrives: reads it in pieces, uploads what changes, goes to
+// the level that a camera asks for, and prints what that took.
 //
 //   draw STREAM
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include <lodestone/io/stream_format.h>
-#include <lodestone/lod/cursor.h>
+#include <lodestone/io/detail_choice.h>
+#include <lodestone/io/draw_cursor.h>
+#include <lodestone/io/stream_reader.h>
 
 namespace {
 
-std::vector<std::byte> read_all(std::FILE* file) {
-  std::vector<std::byte> bytes;
-  std::byte part[4096];
-  while (const std::size_t count = std::fread(part, 1, sizeof part, file))
-    bytes.insert(bytes.end(), part, part + count);
-  return bytes;
-}
+/// What stands for an engine's buffers: they are as long as what has been uploaded.
+struct Buffers {
+  std::vector<lodestone::Vec3f> positions;
+  std::vector<std::vector<lodestone::Index>> corners;
+  std::size_t uploaded_bytes = 0;
+};
 
-std::size_t faces_drawn(const lodestone::ProgressiveMesh& mesh, const lodestone::Cursor& cursor) {
-  std::size_t corners = 0;
-  for (std::size_t group = 0; group < mesh.groups.size(); ++group) corners += cursor.corners(group).size();
-  return corners / 3;
+void upload(const lodestone::ProgressiveMesh& mesh, lodestone::DrawCursor& cursor, Buffers& buffers) {
+  const lodestone::EntryRange wedges = cursor.take_new_wedges();
+  buffers.positions.resize(wedges.end);
+  lodestone::copy_positions(mesh, wedges, std::span(buffers.positions).subspan(wedges.begin));
+  buffers.uploaded_bytes += wedges.size() * sizeof(lodestone::Vec3f);
+  buffers.corners.resize(cursor.group_count());
+  std::vector<lodestone::EntryRange> ranges;
+  for (std::size_t group = 0; group < cursor.group_count(); ++group) {
+    cursor.take_changes(group, 256, ranges);
+    for (const lodestone::EntryRange& range : ranges) {
+      std::vector<lodestone::Index>& corners = buffers.corners[group];
+      if (corners.size() < range.end) corners.resize(range.end);
+      const auto changed = cursor.corners(group).subspan(range.begin, range.size());
+      std::copy(changed.begin(), changed.end(), corners.begin() + static_cast<std::ptrdiff_t>(range.begin));
+      buffers.uploaded_bytes += range.size() * sizeof(lodestone::Index);
+    }
+  }
 }
 
 }  // namespace
@@ -30,18 +47,36 @@ std::size_t faces_drawn(const lodestone::ProgressiveMesh& mesh, const lodestone:
 int main(int argc, char** argv) {
   std::FILE* const file = argc == 2 ? std::fopen(argv[1], "rb") : nullptr;
   if (file == nullptr) return 2;
-  const std::vector<std::byte> bytes = read_all(file);
-  std::fclose(file);
-  const lodestone::Result<lodestone::ProgressiveMesh> mesh = lodestone::decode_stream(bytes);
-  if (!mesh) {
-    std::fprintf(stderr, "%s\n", mesh.error().message.c_str());
-    return 1;
+  lodestone::StreamReader reader;
+  std::optional<lodestone::DrawCursor> cursor;
+  std::optional<lodestone::DetailChoice> choice;
+  Buffers buffers;
+  std::size_t base = 0;
+  std::byte piece[512];
+  while (const std::size_t count = std::fread(piece, 1, sizeof piece, file)) {
+    if (const auto taken = reader.append({piece, count}); !taken) {
+      std::fprintf(stderr, "%s\n", taken.error().message.c_str());
+      return 1;
+    }
+    if (reader.chunk_count() == 0) continue;
+    if (!cursor) {
+      cursor.emplace(reader.mesh());
+      choice.emplace(reader.mesh());
+      base = cursor->face_count();
+    }
+    cursor->seek(choice->choose(cursor->position(), 0));  // as fine as there is
+    upload(reader.mesh(), *cursor, buffers);
   }
-  lodestone::Cursor cursor(*mesh);
-  const std::size_t base = faces_drawn(*mesh, cursor);
-  cursor.seek(static_cast<lodestone::Index>(mesh->record_count()));
-  const std::size_t whole = faces_drawn(*mesh, cursor);
-  cursor.seek(0);
-  std::printf("%zu faces, base mesh %zu\n", whole, base);
-  return base == faces_drawn(*mesh, cursor) && base < whole ? 0 : 1;
+  std::fclose(file);
+  if (!cursor || !reader.done()) return 1;
+
+  const std::size_t whole = cursor->face_count(), bytes = buffers.uploaded_bytes;
+  lodestone::ObjectView far;
+  far.distance = 200;
+  const double two_pixels = 2 / lodestone::pixels_per_unit(far);
+  cursor->seek(choice->choose(cursor->position(), two_pixels));
+  upload(reader.mesh(), *cursor, buffers);
+  std::printf("%zu faces, base mesh %zu; %zu bytes uploaded for all of it, from afar %zu more for %zu faces\n", whole,
+              base, bytes, buffers.uploaded_bytes - bytes, cursor->face_count());
+  return base < whole && cursor->face_count() <= whole ? 0 : 1;
 }

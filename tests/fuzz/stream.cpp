@@ -1,10 +1,9 @@
 // decode_stream: as it comes, and with the checksums made right again, so that what stands behind them is reached.
-// What decodes must be valid.
+// What decodes must be valid, and the same in pieces.
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -12,6 +11,7 @@
 #include <lodestone/lod/simplify.h>
 
 #include "support/fuzz.h"
+#include "support/fuzz_reader.h"
 #include "support/shapes.h"
 
 namespace {
@@ -46,14 +46,9 @@ void seal(Bytes& bytes) {
 
 void decode(const Bytes& bytes) {
   const auto mesh = lodestone::decode_stream(std::as_bytes(std::span(bytes)));
-  if (!mesh) {
-    if (mesh.error().message.empty()) std::abort();
-    return;
-  }
-  if (const auto valid = lodestone::validate(*mesh); !valid) {
-    std::fputs(valid.error().message.c_str(), stderr);
-    std::abort();
-  }
+  if (!mesh && mesh.error().message.empty()) std::abort();
+  if (mesh) lodestone::test::require_valid(*mesh);
+  lodestone::test::check_in_pieces(std::as_bytes(std::span(bytes)), mesh);
 }
 
 }  // namespace

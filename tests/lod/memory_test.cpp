@@ -1,12 +1,6 @@
 // How much memory structures and whole jobs take, by operators new and delete that count. The figures are those of the
 // table "Memory" in bench/README.md: change both together.
 
-#include <malloc.h>
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/parallel.h>
 #include <lodestone/lod/cursor.h>
@@ -20,47 +14,9 @@
 #include "distance/surface_walk.h"
 #include "simplify/carried_points.h"
 #include "support/catch.h"
+#include "support/counted_memory.h"
 #include "support/data.h"
 #include "support/shapes.h"
-
-namespace {
-
-std::atomic<std::size_t> live_bytes = 0, peak_bytes = 0;
-
-// What core/parallel.h tries to get, to see whether there is any memory left, is never written to and given back.
-constexpr std::size_t kTrialBytes = 8 << 20;
-
-void* count(void* block, std::size_t bytes) {
-  if (block == nullptr) throw std::bad_alloc();
-  const std::size_t live = live_bytes += malloc_usable_size(block);
-  std::size_t peak = peak_bytes;
-  while (bytes != kTrialBytes && live > peak && !peak_bytes.compare_exchange_weak(peak, live)) {
-  }
-  return block;
-}
-
-void give_back(void* block) {
-  live_bytes -= malloc_usable_size(block);
-  std::free(block);
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return count(std::malloc(bytes), bytes); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  const auto step = static_cast<std::size_t>(alignment);
-  return count(std::aligned_alloc(step, (bytes + step - 1) / step * step), bytes);
-}
-// Sanitizers have those of their own, which call none of the above.
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  void* const block = std::malloc(bytes);
-  return block != nullptr ? count(block, bytes) : nullptr;
-}
-void operator delete(void* block, const std::nothrow_t&) noexcept { give_back(block); }
-void operator delete(void* block) noexcept { give_back(block); }
-void operator delete(void* block, std::size_t) noexcept { give_back(block); }
-void operator delete(void* block, std::align_val_t) noexcept { give_back(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept { give_back(block); }
 
 namespace lodestone::test {
 namespace {

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <lodestone/lod/cursor.h>
+#include <lodestone/lod/progressive_mesh.h>
+
+namespace lodestone {
+
+/// Entries of a buffer: [begin, end).
+struct EntryRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+
+  std::size_t size() const { return end - begin; }
+  friend bool operator==(const EntryRange&, const EntryRange&) = default;
+};
+
+/// A cursor that says what an engine has to upload after each move: which entries of the index buffers changed, and
+/// which wedges are new. The vertices of a mesh never change: their buffers only grow, and a coarser level uses the
+/// first of them.
+///
+/// Allocates when it is made, and after that only where the mesh has grown.
+class DrawCursor {
+ public:
+  /// Starts at the base mesh, all of which has to be uploaded. Pre: as for Cursor.
+  explicit DrawCursor(const ProgressiveMesh& mesh);
+
+  Index position() const { return cursor_.position(); }
+
+  /// Moves to `position`, clamped to record_count(). Cost: proportional to the records passed.
+  void seek(Index position);
+
+  std::size_t group_count() const { return changed_.size(); }
+  std::size_t vertex_count() const { return cursor_.vertex_count(); }
+  std::size_t wedge_count() const { return cursor_.wedge_count(); }
+  std::size_t face_count() const { return cursor_.face_count(); }
+  /// The level's faces of one group: three wedges each.
+  std::span<const Index> corners(std::size_t group) const { return cursor_.corners(group); }
+
+  /// Gives the ranges of a group's corners that may have changed since they were taken last, ascending, none empty:
+  /// those within `gap` entries of each other as one, since a call costs as much as some bytes do. What is not in them
+  /// is what it was then. Pre: `ranges` holds what is taken of it; allocates like a vector.
+  void take_changes(std::size_t group, std::size_t gap, std::vector<EntryRange>& ranges);
+  /// Gives the wedges that levels since have had and none before: their positions and attributes are to be uploaded.
+  EntryRange take_new_wedges();
+
+ private:
+  /// Faces of a group that changed, in blocks: a bit each.
+  class Changes {
+   public:
+    static constexpr std::size_t kBlockFaces = 64;
+
+    void make_room(std::size_t face_count);
+    void mark(Index face) {
+      const std::size_t block = face / kBlockFaces;
+      bits_[block / 64] |= std::uint64_t{1} << block % 64;
+    }
+    void mark(std::size_t first_face, std::size_t end_face);
+    void take(std::size_t face_count, std::size_t gap, std::vector<EntryRange>& ranges);
+
+   private:
+    std::vector<std::uint64_t> bits_;
+  };
+
+  void make_room();
+  void mark_records(Index first, Index end);
+
+  const ProgressiveMesh* mesh_;
+  Cursor cursor_;
+  std::vector<Changes> changed_;          // by group
+  std::vector<std::size_t> face_counts_;  // by group, where a move began
+  std::size_t wedges_reached_;
+  std::size_t wedges_taken_ = 0;
+};
+
+/// Copies the positions of wedges to `out`, one each. Pre: `wedges` lie in the mesh, and there is room for them.
+void copy_positions(const ProgressiveMesh& mesh, EntryRange wedges, std::span<Vec3f> out);
+
+}  // namespace lodestone

@@ -1,0 +1,81 @@
+#include <lodestone/io/draw_cursor.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace lodestone {
+
+void DrawCursor::Changes::make_room(std::size_t face_count) {
+  const std::size_t blocks = (face_count + kBlockFaces - 1) / kBlockFaces, words = (blocks + 63) / 64;
+  if (words > bits_.size()) bits_.resize(words, 0);
+}
+
+void DrawCursor::Changes::mark(std::size_t first_face, std::size_t end_face) {
+  for (std::size_t face = first_face; face < end_face; face = (face / kBlockFaces + 1) * kBlockFaces)
+    mark(static_cast<Index>(face));
+}
+
+/// Those of faces that are no more count for nothing: they are marked again where they come back.
+void DrawCursor::Changes::take(std::size_t face_count, std::size_t gap, std::vector<EntryRange>& ranges) {
+  ranges.clear();
+  for (std::size_t word = 0; word < bits_.size(); ++word)
+    for (std::uint64_t bits = bits_[word]; bits != 0; bits &= bits - 1) {
+      const std::size_t block = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+      const EntryRange changed = {3 * kBlockFaces * block, 3 * std::min(kBlockFaces * (block + 1), face_count)};
+      if (changed.begin >= changed.end) continue;
+      if (!ranges.empty() && changed.begin - ranges.back().end <= gap)
+        ranges.back().end = changed.end;
+      else
+        ranges.push_back(changed);
+    }
+  std::fill(bits_.begin(), bits_.end(), 0);
+}
+
+DrawCursor::DrawCursor(const ProgressiveMesh& mesh)
+    : mesh_(&mesh),
+      cursor_(mesh),
+      changed_(mesh.groups.size()),
+      face_counts_(mesh.groups.size()),
+      wedges_reached_(cursor_.wedge_count()) {
+  make_room();
+  for (std::size_t g = 0; g < changed_.size(); ++g) changed_[g].mark(0, corners(g).size() / 3);
+}
+
+void DrawCursor::make_room() {
+  for (std::size_t g = 0; g < changed_.size(); ++g) changed_[g].make_room(mesh_->groups[g].face_count);
+}
+
+/// Marks the slots that records overwrite, whichever way.
+void DrawCursor::mark_records(Index first, Index end) {
+  const Index first_sector = mesh_->sector_begin[first], end_sector = mesh_->sector_begin[end];
+  for (Index s = first_sector; s < end_sector; ++s) {
+    Changes& changes = changed_[mesh_->sectors[s].group];
+    for (std::uint64_t i = mesh_->slot_begin(s); i < mesh_->slot_begin(s + 1); ++i) changes.mark(mesh_->slots[i]);
+  }
+}
+
+void DrawCursor::seek(Index position) {
+  make_room();
+  const Index from = cursor_.position();
+  for (std::size_t g = 0; g < changed_.size(); ++g) face_counts_[g] = corners(g).size() / 3;
+  cursor_.seek(position);
+  mark_records(std::min(from, cursor_.position()), std::max(from, cursor_.position()));
+  for (std::size_t g = 0; g < changed_.size(); ++g) changed_[g].mark(face_counts_[g], corners(g).size() / 3);
+  wedges_reached_ = std::max(wedges_reached_, wedge_count());
+}
+
+void DrawCursor::take_changes(std::size_t group, std::size_t gap, std::vector<EntryRange>& ranges) {
+  changed_[group].take(corners(group).size() / 3, gap, ranges);
+}
+
+EntryRange DrawCursor::take_new_wedges() {
+  const EntryRange taken = {wedges_taken_, wedges_reached_};
+  wedges_taken_ = wedges_reached_;
+  return taken;
+}
+
+void copy_positions(const ProgressiveMesh& mesh, EntryRange wedges, std::span<Vec3f> out) {
+  for (std::size_t w = wedges.begin; w < wedges.end; ++w) out[w - wedges.begin] = mesh.positions[mesh.wedge_vertex[w]];
+}
+
+}  // namespace lodestone

@@ -1,0 +1,160 @@
+#include <lodestone/io/draw_cursor.h>
+
+#include <cstring>
+#include <vector>
+
+#include <lodestone/io/compact_stream.h>
+#include <lodestone/io/stream_reader.h>
+#include <lodestone/lod/simplify.h>
+
+#include "support/counted_memory.h"
+#include "support/data.h"
+#include "support/mesh_properties.h"
+#include "support/random.h"
+
+namespace lodestone::test {
+namespace {
+
+std::vector<ProgressiveMesh> meshes() {
+  std::vector<ProgressiveMesh> all;
+  SimplifyOptions options;
+  options.measure_step = 0;
+  options.vanish = true;
+  for (const NamedShape& shape : all_shapes()) {
+    const auto assembled = assemble(shape.soup);
+    if (assembled && assembled->mesh.face_count() > 0)
+      all.push_back(std::move(simplify(assembled->mesh, options).value().mesh));
+  }
+  return all;
+}
+
+/// What an engine has: buffers into which only the ranges named are written.
+class Engine {
+ public:
+  Engine(const ProgressiveMesh& mesh, DrawCursor& cursor)
+      : mesh_(&mesh), cursor_(&cursor), corners_(cursor.group_count()) {}
+
+  void upload(std::size_t gap) {
+    const EntryRange wedges = cursor_->take_new_wedges();
+    REQUIRE(wedges.begin == positions_.size());
+    positions_.resize(wedges.end);
+    copy_positions(*mesh_, wedges, std::span(positions_).subspan(wedges.begin));
+    for (std::size_t group = 0; group < corners_.size(); ++group) upload_group(group, gap);
+  }
+
+  void check() const {
+    REQUIRE(positions_.size() >= cursor_->wedge_count());
+    for (std::size_t w = 0; w < positions_.size(); ++w) {
+      const Vec3f& there = mesh_->positions[mesh_->wedge_vertex[w]];
+      REQUIRE(std::memcmp(&positions_[w], &there, sizeof there) == 0);
+    }
+    for (std::size_t group = 0; group < corners_.size(); ++group) {
+      const auto wanted = cursor_->corners(group);
+      REQUIRE(corners_[group].size() >= wanted.size());
+      REQUIRE(std::equal(wanted.begin(), wanted.end(), corners_[group].begin()));
+    }
+  }
+
+  std::size_t uploaded() const { return uploaded_; }
+
+ private:
+  void upload_group(std::size_t group, std::size_t gap) {
+    const auto wanted = cursor_->corners(group);
+    cursor_->take_changes(group, gap, ranges_);
+    std::size_t last = 0;
+    for (const EntryRange& range : ranges_) {
+      REQUIRE(range.begin < range.end);
+      REQUIRE(range.end <= wanted.size());
+      REQUIRE((&range == ranges_.data() || range.begin > last + gap));
+      last = range.end;
+      uploaded_ += range.size();
+      if (corners_[group].size() < range.end) corners_[group].resize(range.end, kNoIndex);
+      std::copy(wanted.begin() + static_cast<std::ptrdiff_t>(range.begin),
+                wanted.begin() + static_cast<std::ptrdiff_t>(range.end),
+                corners_[group].begin() + static_cast<std::ptrdiff_t>(range.begin));
+    }
+  }
+
+  const ProgressiveMesh* mesh_;
+  DrawCursor* cursor_;
+  std::vector<Vec3f> positions_;
+  std::vector<std::vector<Index>> corners_;
+  std::vector<EntryRange> ranges_;
+  std::size_t uploaded_ = 0;
+};
+
+ProgressiveMesh dense(const TriangleSoup& soup) {
+  SimplifyOptions options;
+  options.dense_rounds = 1.5;
+  options.measure_step = 0;
+  return std::move(simplify(mesh_of(soup), options).value().mesh);
+}
+
+}  // namespace
+
+TEST_CASE("who writes the ranges named and no others has the buffers of the level, whatever the moves") {
+  Random random(3);
+  for (const ProgressiveMesh& mesh : meshes()) {
+    DrawCursor cursor(mesh);
+    Engine engine(mesh, cursor);
+    for (int i = 0; i < 30; ++i) {
+      if (random.below(3) > 0) engine.upload(random.below(2) * random.below(1000));  // several moves between some
+      cursor.seek(static_cast<Index>(random.below(mesh.record_count() + 1)));
+      Cursor plain(mesh);
+      plain.seek(cursor.position());
+      REQUIRE(cursor.face_count() == plain.face_count());
+      REQUIRE(cursor.wedge_count() == plain.wedge_count());
+    }
+    engine.upload(0);
+    engine.check();
+  }
+}
+
+TEST_CASE("the buffers follow a stream that arrives") {
+  const auto stream = encode_compact(dense(terrain(60, 3)));
+  REQUIRE(stream);
+  StreamReader reader;
+  Random random(4);
+  std::optional<DrawCursor> cursor;
+  std::optional<Engine> engine;
+  for (std::span<const std::byte> bytes = stream->bytes; !bytes.empty();) {
+    const auto piece = bytes.first(std::min<std::size_t>(1 + random.below(400), bytes.size()));
+    REQUIRE(reader.append(piece));
+    bytes = bytes.subspan(piece.size());
+    if (reader.chunk_count() == 0) continue;
+    if (!cursor) {
+      cursor.emplace(reader.mesh());
+      engine.emplace(reader.mesh(), *cursor);
+    }
+    cursor->seek(static_cast<Index>(random.below(reader.mesh().record_count() + 1)));
+    engine->upload(0);
+    engine->check();
+  }
+  cursor->seek(kNoIndex);
+  engine->upload(0);
+  engine->check();
+  CHECK(cursor->position() == reader.mesh().record_count());
+}
+
+TEST_CASE("a small move uploads little, none nothing, and moves allocate nothing") {
+  const ProgressiveMesh mesh = dense(icosphere(kReduced ? 4 : 5, 0.02, 1));
+  const auto last = static_cast<Index>(mesh.record_count());
+  DrawCursor cursor(mesh);
+  Engine engine(mesh, cursor);
+  cursor.seek(last);
+  engine.upload(0);
+  const std::size_t all = engine.uploaded();
+  engine.upload(0);
+  CHECK(engine.uploaded() == all);
+  cursor.seek(last - 20);
+  engine.upload(0);
+  engine.check();
+  // Twenty records of six faces, in blocks of 64 faces at most.
+  CHECK(engine.uploaded() - all <= 20 * 6 * 64 * 3);
+
+  const std::size_t allocations = allocation_count;
+  for (const Index goal : {Index{0}, last, last / 2, last / 3, last}) cursor.seek(goal);
+  CHECK(allocation_count == allocations);
+}
+
+}  // namespace lodestone::test
