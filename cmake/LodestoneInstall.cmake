@@ -1,5 +1,5 @@
 # Installs the libraries, their headers, a CMake package (find_package(lodestone CONFIG) gives lodestone::core and so on) and
-# two for pkg-config: lodestone, and lodestone-stream for what only draws from streams.
+# three for pkg-config: lodestone, lodestone-stream for what only draws from streams, and lodestone-c for that in C.
 
 include(CMakePackageConfigHelpers)
 
@@ -46,7 +46,7 @@ endfunction()
 if(NOT LODESTONE_RUNTIME_ONLY)
   set(linked ${modules})
   list(REVERSE linked)
-  list(REMOVE_ITEM linked lodestone_lod)  # a group: nothing of its own to link
+  list(REMOVE_ITEM linked lodestone_lod lodestone_c)  # a group: nothing of its own to link; for programs in C
   lodestone_pkg_config(lodestone "${PROJECT_DESCRIPTION}"
     MODULES ${linked}
     PACKAGES libzstd draco assimp geos tbb
@@ -55,3 +55,5 @@ endif()
 lodestone_pkg_config(lodestone-stream "Draws from lodestone's removal streams"
   MODULES lodestone_stream lodestone_progressive lodestone_core
   PACKAGES libzstd)
+lodestone_pkg_config(lodestone-c "Draws from lodestone's streams, in C"
+  MODULES lodestone_c)

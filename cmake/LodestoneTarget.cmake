@@ -15,12 +15,16 @@ function(lodestone_settings target)
 endfunction()
 
 # lodestone_module(core SOURCES src/a.cpp … DEPENDS lodestone::… PRIVATE_DEPENDS …): a library of its own, shared where
-# BUILD_SHARED_LIBS says so. Its public headers lie in include/ of the folder, those for the folder alone are named from it:
+# BUILD_SHARED_LIBS says so, or always with SHARED. Its public headers lie in include/ of the folder, those for the folder alone are named from it:
 # "distance/triangle.h".
 function(lodestone_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "SHARED" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   set(target lodestone_${name})
-  add_library(${target} ${ARG_SOURCES})
+  set(kind)
+  if(ARG_SHARED AND NOT EMSCRIPTEN)  # there is one module in the end, and no other to share with
+    set(kind SHARED)
+  endif()
+  add_library(${target} ${kind} ${ARG_SOURCES})
   add_library(lodestone::${name} ALIAS ${target})
   # Before 1.0, a minor version may change the interface, and so the name of the shared library. Those installed find each
   # other wherever they lie.

@@ -74,8 +74,29 @@ EntryRange DrawCursor::take_new_wedges() {
   return taken;
 }
 
-void copy_positions(const ProgressiveMesh& mesh, EntryRange wedges, std::span<Vec3f> out) {
-  for (std::size_t w = wedges.begin; w < wedges.end; ++w) out[w - wedges.begin] = mesh.positions[mesh.wedge_vertex[w]];
+void copy_positions(const ProgressiveMesh& mesh, EntryRange wedges, float* out) {
+  for (std::size_t w = wedges.begin; w < wedges.end; ++w) {
+    const Vec3f& p = mesh.positions[mesh.wedge_vertex[w]];
+    *out++ = p.x, *out++ = p.y, *out++ = p.z;
+  }
+}
+
+void copy_normals(const ProgressiveMesh& mesh, const DrawCursor& cursor, float* out) {
+  std::vector<Vec3> sums(cursor.vertex_count());
+  for (std::size_t group = 0; group < cursor.group_count(); ++group) {
+    const std::span<const Index> corners = cursor.corners(group);
+    for (std::size_t c = 0; c < corners.size(); c += 3) {
+      const Index v[3] = {mesh.wedge_vertex[corners[c]], mesh.wedge_vertex[corners[c + 1]],
+                          mesh.wedge_vertex[corners[c + 2]]};
+      const Vec3 origin(mesh.positions[v[0]]);
+      const Vec3 area = cross(Vec3(mesh.positions[v[1]]) - origin, Vec3(mesh.positions[v[2]]) - origin);
+      for (const Index vertex : v) sums[vertex] += area;
+    }
+  }
+  for (std::size_t w = 0; w < cursor.wedge_count(); ++w) {
+    const Vec3f normal = to_float(normalized(sums[mesh.wedge_vertex[w]]));
+    *out++ = normal.x, *out++ = normal.y, *out++ = normal.z;
+  }
 }
 
 }  // namespace lodestone

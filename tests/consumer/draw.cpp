@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <lodestone/io/detail_choice.h>
@@ -18,16 +17,16 @@ namespace {
 
 /// What stands for an engine's buffers: they are as long as what has been uploaded.
 struct Buffers {
-  std::vector<lodestone::Vec3f> positions;
+  std::vector<float> positions;  // three for each wedge
   std::vector<std::vector<lodestone::Index>> corners;
   std::size_t uploaded_bytes = 0;
 };
 
 void upload(const lodestone::ProgressiveMesh& mesh, lodestone::DrawCursor& cursor, Buffers& buffers) {
   const lodestone::EntryRange wedges = cursor.take_new_wedges();
-  buffers.positions.resize(wedges.end);
-  lodestone::copy_positions(mesh, wedges, std::span(buffers.positions).subspan(wedges.begin));
-  buffers.uploaded_bytes += wedges.size() * sizeof(lodestone::Vec3f);
+  buffers.positions.resize(3 * wedges.end);
+  lodestone::copy_positions(mesh, wedges, buffers.positions.data() + 3 * wedges.begin);
+  buffers.uploaded_bytes += 3 * wedges.size() * sizeof(float);
   buffers.corners.resize(cursor.group_count());
   std::vector<lodestone::EntryRange> ranges;
   for (std::size_t group = 0; group < cursor.group_count(); ++group) {

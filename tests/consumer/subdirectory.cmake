@@ -8,6 +8,6 @@ build_programs(build -D LODESTONE_SOURCE=${LODESTONE_SOURCE} -D LODESTONE_RUNTIM
 run_draw(build)
 file(GLOB_RECURSE libraries RELATIVE ${WORK_DIR}/build ${WORK_DIR}/build/*.a ${WORK_DIR}/build/*.so)
 list(LENGTH libraries count)
-if(NOT count EQUAL 3)
-  message(FATAL_ERROR "built ${libraries}, not just core, progressive and stream")
+if(NOT count EQUAL 4)
+  message(FATAL_ERROR "built ${libraries}, not just core, progressive, stream and c")
 endif()

@@ -36,17 +36,17 @@ class Engine {
 
   void upload(std::size_t gap) {
     const EntryRange wedges = cursor_->take_new_wedges();
-    REQUIRE(wedges.begin == positions_.size());
-    positions_.resize(wedges.end);
-    copy_positions(*mesh_, wedges, std::span(positions_).subspan(wedges.begin));
+    REQUIRE(3 * wedges.begin == positions_.size());
+    positions_.resize(3 * wedges.end);
+    copy_positions(*mesh_, wedges, positions_.data() + 3 * wedges.begin);
     for (std::size_t group = 0; group < corners_.size(); ++group) upload_group(group, gap);
   }
 
   void check() const {
-    REQUIRE(positions_.size() >= cursor_->wedge_count());
-    for (std::size_t w = 0; w < positions_.size(); ++w) {
+    REQUIRE(positions_.size() >= 3 * cursor_->wedge_count());
+    for (std::size_t w = 0; 3 * w < positions_.size(); ++w) {
       const Vec3f& there = mesh_->positions[mesh_->wedge_vertex[w]];
-      REQUIRE(std::memcmp(&positions_[w], &there, sizeof there) == 0);
+      REQUIRE(std::memcmp(&positions_[3 * w], &there, sizeof there) == 0);
     }
     for (std::size_t group = 0; group < corners_.size(); ++group) {
       const auto wanted = cursor_->corners(group);
@@ -77,7 +77,7 @@ class Engine {
 
   const ProgressiveMesh* mesh_;
   DrawCursor* cursor_;
-  std::vector<Vec3f> positions_;
+  std::vector<float> positions_;
   std::vector<std::vector<Index>> corners_;
   std::vector<EntryRange> ranges_;
   std::size_t uploaded_ = 0;
@@ -155,6 +155,25 @@ TEST_CASE("a small move uploads little, none nothing, and moves allocate nothing
   const std::size_t allocations = allocation_count;
   for (const Index goal : {Index{0}, last, last / 2, last / 3, last}) cursor.seek(goal);
   CHECK(allocation_count == allocations);
+}
+
+TEST_CASE("normals are those of the faces around, one for all wedges of a vertex") {
+  for (const ProgressiveMesh& mesh : meshes()) {
+    DrawCursor cursor(mesh);
+    cursor.seek(static_cast<Index>(mesh.record_count() / 2));
+    std::vector<float> normals(3 * cursor.wedge_count());
+    copy_normals(mesh, cursor, normals.data());
+    const auto normal = [&](std::size_t w) { return Vec3(normals[3 * w], normals[3 * w + 1], normals[3 * w + 2]); };
+    const Mesh level = extract_level(mesh, cursor.position());
+    std::vector<Vec3> sums(level.vertex_count());
+    for (Index f = 0; f < level.face_count(); ++f)
+      for (Index c = 3 * f; c < 3 * f + 3; ++c) sums[level.corner_vertex(c)] += area_vector(level, f);
+    for (std::size_t w = 0; w < cursor.wedge_count(); ++w) {
+      const Vec3& sum = sums[mesh.wedge_vertex[w]];
+      if (length(sum) > 1e-9) CHECK(length(normal(w) - normalized(sum)) < 1e-5);
+      if (sum == Vec3{}) CHECK(length(normal(w)) == 0);
+    }
+  }
 }
 
 }  // namespace lodestone::test

@@ -77,7 +77,12 @@ class DrawCursor {
   std::size_t wedges_taken_ = 0;
 };
 
-/// Copies the positions of wedges to `out`, one each. Pre: `wedges` lie in the mesh, and there is room for them.
-void copy_positions(const ProgressiveMesh& mesh, EntryRange wedges, std::span<Vec3f> out);
+/// Copies the positions of wedges to `out`, three floats each. Pre: they lie in the mesh, and there is room for them.
+void copy_positions(const ProgressiveMesh& mesh, EntryRange wedges, float* out);
+
+/// Writes smooth normals for the wedges of the cursor's level, three floats each: the mean of the faces around the
+/// vertex by their areas, of length 1 or, where there are none, 0. Pre: there is room for them. Cost: the level's faces
+/// and wedges; allocates for the vertices.
+void copy_normals(const ProgressiveMesh& mesh, const DrawCursor& cursor, float* out);
 
 }  // namespace lodestone
