@@ -1,5 +1,6 @@
-// Bits for each vertex of compact streams, by part, beside Draco on the same grid; positions alone. The whole of either
-// file counts. Streams are decoded again, so that the times of both ways are there, and checked.
+// Bits for each vertex of compact streams, by part, beside Draco on the same grids: positions alone, and scenes with
+// attributes. The whole of either file counts. Streams are decoded again, so that the times of both ways are there, and
+// checked.
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include <lodestone/core/assemble.h>
 #include <lodestone/io/compact_stream.h>
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/io/scene.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
@@ -28,6 +31,8 @@ struct Options {
   std::string data = "../shared/data";
   std::vector<std::string> files = {"paper/stanford-bunny.obj", "paper/fandisk.obj", "mesh/rocker-arm.obj",
                                     "mesh/homer.obj",           "mesh/cow.obj",      "mesh/cheburashka.obj"};
+  std::vector<std::string> scenes = {"mesh/spot/spot_triangulated.obj", "gltf/FlightHelmet/FlightHelmet.gltf",
+                                     "skin-morph/Knight.glb", "skin-morph/MorphStressTest.gltf"};
   std::vector<int> bits = {12, 14};
   std::vector<double> rounds = {0, 1.5, 2};
   bool curve = false;
@@ -133,24 +138,156 @@ void print_table(const std::vector<std::pair<std::string, Mesh>>& meshes, double
   }
 }
 
+/// The meshes of a scene, or the one of a file; of their attributes only those that have one of these names, or all.
+std::vector<Mesh> scene_meshes(const std::filesystem::path& path, const std::vector<std::string>& names) {
+  const auto scene = Scene::read(path);
+  if (!scene) die(path.string(), scene.error());
+  std::vector<Mesh> meshes;
+  for (const SceneMesh& given : scene->meshes()) {
+    TriangleSoup soup = to_soup(given.mesh);
+    std::erase_if(soup.attributes, [&](const Attribute& attribute) {
+      return !names.empty() && std::find(names.begin(), names.end(), attribute.name) == names.end();
+    });
+    auto assembled = assemble(soup);
+    if (!assembled) die(path.string(), assembled.error());
+    meshes.push_back(std::move(assembled->mesh));
+  }
+  return meshes;
+}
+
+detail::QuantizationGrid attribute_grid(const Attribute& attribute, const CompactOptions& options) {
+  if (attribute.type != ComponentType::Float32) return {{}, 1, 0};
+  const std::vector<float> values = attribute_values(attribute);
+  const std::size_t size = attribute.component_count;
+  std::vector<float> low(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size)), high = low;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    low[i % size] = std::min(low[i % size], values[i]);
+    high[i % size] = std::max(high[i % size], values[i]);
+  }
+  float range = 0;
+  for (std::size_t c = 0; c < size; ++c) range = std::max(range, high[c] - low[c]);
+  const bool is_texture = attribute.name.starts_with("TEXCOORD_");
+  const int bits = attribute.name == "NORMAL" ? options.normal_bits
+                   : is_texture               ? options.texture_bits
+                                              : options.other_bits;
+  return {low, range > 0 ? range : 1, bits};
+}
+
+double draco_scene_bits(const Mesh& mesh, const CompactOptions& options, int level) {
+  std::vector<Index> faces(mesh.face_count());
+  std::iota(faces.begin(), faces.end(), Index{0});
+  const Mesh ordered = pick_faces(mesh, faces);
+  detail::QuantizationGrids grids;
+  const CompactGrid& grid = *options.grid;
+  grids.position = {{grid.origin.x, grid.origin.y, grid.origin.z}, grid.range, options.grid_bits};
+  for (const Attribute& attribute : ordered.attributes) grids.attributes.push_back(attribute_grid(attribute, options));
+  double best = 0;
+  for (const auto prediction : {detail::DracoPrediction::Positions, detail::DracoPrediction::Neighbours}) {
+    const auto primitive = detail::encode_draco(ordered, grids, {detail::DracoMethod::Edgebreaker, prediction}, level);
+    if (!primitive) die("Draco", primitive.error());
+    const double bits = 8 * static_cast<double>(primitive->bytes.size());
+    best = best == 0 ? bits : std::min(best, bits);
+  }
+  return best;
+}
+
+/// What the streams of a scene's meshes take together.
+struct SceneBits {
+  double vertices = 0, wedges = 0, loose = 0;
+  double total = 0, places = 0, wedge_bits = 0, positions = 0, rest = 0, draco7 = 0, draco10 = 0;
+  std::vector<std::pair<std::string, double>> attributes;
+
+  void add(const std::string& name, double bits) {
+    for (auto& [known, sum] : attributes)
+      if (known == name) {
+        sum += bits;
+        return;
+      }
+    attributes.emplace_back(name, bits);
+  }
+};
+
+void add_mesh(const std::string& name, const Mesh& mesh, double rounds, int bits, SceneBits& sum) {
+  SimplifyOptions simplify_options;
+  simplify_options.dense_rounds = rounds;
+  const auto records = simplify(mesh, simplify_options);
+  if (!records) die(name, records.error());
+  CompactOptions options;
+  options.grid_bits = bits;
+  options.grid = grid_of(mesh);
+  const auto stream = encode_compact(records->mesh, options);
+  if (!stream) die(name, stream.error());
+  const auto coded = decode_compact(stream->bytes);
+  if (!coded) die(name, coded.error());
+  if (const auto valid = validate(*coded); !valid) die(name, valid.error());
+  const CompactSizes& s = stream->sizes;
+  sum.vertices += static_cast<double>(records->mesh.positions.size());
+  sum.wedges += static_cast<double>(records->mesh.wedge_vertex.size());
+  sum.loose += static_cast<double>(stream->loose_count);
+  sum.total += 8 * static_cast<double>(stream->bytes.size());
+  sum.places += s.places;
+  sum.wedge_bits += s.wedges;
+  sum.positions += s.positions;
+  sum.rest += s.base + s.errors + s.header;
+  for (std::size_t a = 0; a < s.attributes.size(); ++a) sum.add(mesh.attributes[a].name, s.attributes[a]);
+  sum.draco7 += draco_scene_bits(mesh, options, 7);
+  sum.draco10 += draco_scene_bits(mesh, options, 10);
+}
+
+void print_scene(const std::string& name, const std::vector<Mesh>& meshes, double rounds, int bits) {
+  SceneBits sum;
+  for (const Mesh& mesh : meshes) add_mesh(name, mesh, rounds, bits, sum);
+  const double n = sum.vertices;
+  std::printf("| %s | %.0f / %.0f | **%.2f** | %.2f | %.2f | %.2f | %.2f | ", name.c_str(), n, sum.wedges,
+              sum.total / n, sum.places / n, sum.wedge_bits / n, sum.positions / n, sum.rest / n);
+  for (const auto& [attribute, attribute_bits] : sum.attributes)
+    std::printf("%s %.2f ", attribute.c_str(), attribute_bits / n);
+  std::printf("| %.2f | %.2f | **%.3f** |\n", sum.draco7 / n, sum.draco10 / n, sum.total / sum.draco7);
+  if (sum.loose > 0) std::printf("  (%.0f records told face by face)\n", sum.loose);
+}
+
+void print_scenes(const std::vector<std::filesystem::path>& paths, double rounds, int bits) {
+  std::printf(
+      "\nScenes: positions of %d bits, normals of 10, other floats of 12; dense_rounds = %g; bits for each vertex\n\n",
+      bits, rounds);
+  std::printf(
+      "| | vertices / wedges | stream | places | wedges | positions | rest | attributes | Draco cl 7 | cl 10 | stream "
+      "over cl 7 |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const auto& path : paths) {
+    const std::string name = path.stem().string();
+    print_scene(name, scene_meshes(path, {"NORMAL", "TEXCOORD_0"}), rounds, bits);
+    print_scene(name + ", all attributes", scene_meshes(path, {}), rounds, bits);
+  }
+}
+
 int run(int argc, char** argv) {
   Options options;
   if (const char* data = std::getenv("LODESTONE_DATA")) options.data = data;
   CLI::App app("Bits of compact streams beside Draco");
   app.add_option("files", options.files, "meshes, by themselves or in the folder of models");
+  app.add_option("--scenes", options.scenes, "files whose attributes count, too; none for ''")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--data", options.data, "folder of models");
   app.add_option("--bits", options.bits, "bits of positions")->delimiter(',')->allow_extra_args(false);
   app.add_option("--rounds", options.rounds, "SimplifyOptions::dense_rounds")->delimiter(',')->allow_extra_args(false);
   app.add_flag("--curve", options.curve, "what each chunk leads to");
   CLI11_PARSE(app, argc, argv);
 
+  const auto path_of = [&](const std::string& file) {
+    return std::filesystem::exists(file) ? std::filesystem::path(file) : std::filesystem::path(options.data) / file;
+  };
   std::vector<std::pair<std::string, Mesh>> meshes;
-  for (const std::string& file : options.files) {
-    const std::filesystem::path there = std::filesystem::path(options.data) / file;
-    const std::filesystem::path path = std::filesystem::exists(file) ? std::filesystem::path(file) : there;
-    meshes.emplace_back(path.stem().string(), plain_mesh(path));
+  for (const std::string& file : options.files)
+    if (!file.empty()) meshes.emplace_back(path_of(file).stem().string(), plain_mesh(path_of(file)));
+  std::vector<std::filesystem::path> scenes;
+  for (const std::string& file : options.scenes)
+    if (!file.empty()) scenes.push_back(path_of(file));
+  for (const double rounds : options.rounds) {
+    if (!meshes.empty()) print_table(meshes, rounds, options);
+    for (const int bits : options.bits)
+      if (!scenes.empty()) print_scenes(scenes, rounds, bits);
   }
-  for (const double rounds : options.rounds) print_table(meshes, rounds, options);
   return 0;
 }
 

@@ -11,13 +11,20 @@
 namespace lodestone::detail {
 namespace {
 
+constexpr std::size_t kMostWedgesEach = 65536;  // of a vertex
+
 auto broken(const std::string& message) { return fail(ErrorCode::Malformed, message); }
+
+LevelLimits limits_of(const CompactHeader& header) {
+  return {header.grid_bits, static_cast<Index>(header.groups.size()), header.vertex_count(), header.wedge_count(),
+          header.face_count()};
+}
 
 }  // namespace
 
 CompactDecoder::CompactDecoder(CompactHeader header, ProgressiveMesh& mesh, std::uint64_t most_bytes)
     : header_(std::move(header)),
-      levels_(header_.grid_bits),
+      levels_(limits_of(header_), header_.attributes),
       faces_left_(kMostFacesWalked * (header_.face_count() + 1)),
       mesh_(mesh),
       most_bytes_(most_bytes) {}
@@ -42,77 +49,120 @@ void CompactDecoder::add_position(const Vec3i& position) {
       {on_axis(position.x, origin.x), on_axis(position.y, origin.y), on_axis(position.z, origin.z)});
 }
 
-Result<void> CompactDecoder::read_base(BitCoder& coder) {
-  BaseMesh base;
-  base.corners.resize(3 * std::size_t{header_.base_face_count});
-  base.positions.resize(header_.base_point_count);
-  base.same_as.resize(header_.base_point_count);
-  if (!levels_.code_base(coder, base)) return broken("base mesh is none");
-  mesh_.deviation.push_back(0);
-  mesh_.curvature_error.push_back(0);
-  LODESTONE_CHECK(read_errors(coder));
-  for (Index point = 0; point < header_.base_point_count; ++point) {
-    const bool is_copy = base.same_as[point] != point;
-    const auto next = static_cast<Index>(mesh_.positions.size());
-    mesh_.wedge_vertex.push_back(is_copy ? mesh_.wedge_vertex[base.same_as[point]] : next);
-    if (!is_copy) add_position(base.positions[point]);
+/// Adds what the attributes of the newest wedges are.
+void CompactDecoder::add_attributes() {
+  for (std::size_t a = 0; a < mesh_.attributes.size(); ++a) {
+    const ElementCoder& coded = levels_.attributes().attribute(a);
+    std::vector<std::byte>& data = mesh_.attributes[a].data;
+    for (auto w = static_cast<Index>(data.size() / mesh_.attributes[a].element_bytes()); w < levels_.wedges().size();
+         ++w)
+      append_element(coded.spec(), coded.numbers(w), data);
   }
-  if (mesh_.positions.size() != header_.base_vertex_count)
-    return broken(
-        text("base mesh has ", mesh_.positions.size(), " vertices where ", header_.base_vertex_count, " are due"));
+}
+
+void CompactDecoder::begin_mesh(const BaseMesh& base) {
+  const PatchMesh& level = levels_.mesh();
+  for (const Vec3i& position : base.positions) add_position(position);
+  for (Index w = 0; w < levels_.wedges().size(); ++w) mesh_.wedge_vertex.push_back(levels_.wedges().vertex(w));
   mesh_.base_vertex_count = header_.base_vertex_count;
-  mesh_.base_wedge_count = header_.base_point_count;
-  mesh_.groups.push_back({header_.material, 0, std::move(base.corners)});
+  mesh_.base_wedge_count = header_.base_wedge_count;
+  for (const CompactGroup& group : header_.groups) mesh_.groups.push_back({group.material, 0, {}});
+  group_faces_.assign(header_.groups.size(), 0);
+  for (Index face = 0; face < level.face_count(); ++face) {
+    slots_.push_back(group_faces_[level.group(face)]++);
+    for (Index c = 3 * face; c < 3 * face + 3; ++c)
+      mesh_.groups[level.group(face)].base_corners.push_back(level.wedge(c));
+  }
+  for (const AttributeSpec& spec : header_.attributes)
+    mesh_.attributes.push_back({spec.name, spec.type, spec.component_count, spec.normalized, {}});
+  add_attributes();
   mesh_.record_wedge_begin.push_back(mesh_.base_wedge_count);
   mesh_.sector_begin.push_back(0);
   mesh_.polygon_begin.push_back(0);
   mesh_.round_begin.push_back(0);
+}
+
+Result<void> CompactDecoder::read_base(BitCoder& coder) {
+  BaseMesh base;
+  const auto face_count = static_cast<std::size_t>(header_.base_face_count());
+  base.corners.resize(3 * face_count);
+  base.wedges.resize(3 * face_count);
+  base.positions.resize(header_.base_vertex_count);
+  base.wedge_counts.resize(header_.base_vertex_count);
+  for (Index g = 0; g < header_.groups.size(); ++g)
+    base.groups.insert(base.groups.end(), header_.groups[g].base_face_count, g);
+  if (!levels_.code_base(coder, base)) return broken("base mesh is none");
+  if (levels_.wedges().size() != header_.base_wedge_count)
+    return broken(
+        text("base mesh has ", levels_.wedges().size(), " wedges where ", header_.base_wedge_count, " are due"));
+  if (!levels_.code_base_attributes(coder, {})) return broken("an attribute of the base mesh is out of its range");
+  mesh_.deviation.push_back(0);
+  mesh_.curvature_error.push_back(0);
+  LODESTONE_CHECK(read_errors(coder));
+  begin_mesh(base);
   return {};
 }
 
-/// Notes the coarse faces that a record replaces, by their corners' places in its polygon.
-void CompactDecoder::add_triangles(std::size_t i, std::span<const Index> polygon) {
-  const NewVertices& round = levels_.round();
-  const Index begin = i == 0 ? 0 : round.vertices[i - 1].replaced_end;
-  for (Index f = begin; f < round.vertices[i].replaced_end; ++f) {
-    mesh_.slots.push_back(round.replaced[f]);
-    std::array<std::uint8_t, 3> places{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto found = std::find(polygon.begin(), polygon.end(), round.replaced_corners[f][k]);
-      places[k] = static_cast<std::uint8_t>(found - polygon.begin());
-    }
-    std::sort(places.begin(), places.end());
+/// Adds a sector but for its slots.
+void CompactDecoder::add_sector(std::size_t s) {
+  const SectorList& sectors = levels_.sectors();
+  const SectorList::Sector& sector = sectors.sectors[s];
+  const std::span<const Index> polygon = sectors.polygon(s);
+  mesh_.polygons.insert(mesh_.polygons.end(), polygon.begin(), polygon.end());
+  for (const auto& places : sectors.triangles_of(s))
     mesh_.triangles.insert(mesh_.triangles.end(), places.begin(), places.end());
-  }
+  for (const Index face : sectors.coarse_of(s)) freed_.push_back(slots_[face]);
+  mesh_.sectors.push_back({static_cast<std::uint16_t>(polygon.size()), static_cast<std::uint16_t>(sector.group),
+                           static_cast<std::uint16_t>(sector.wedge - mesh_.record_wedge_begin.back()), sector.shape});
+  mesh_.polygon_begin.push_back(mesh_.polygons.size());
 }
 
-void CompactDecoder::add_record(std::size_t i) {
-  const std::span<const Index> star = levels_.round().star(i);
-  const bool closed = levels_.round().vertices[i].closed;
-  const std::size_t begin = mesh_.polygons.size();
-  for (const Index face : star) mesh_.polygons.push_back(levels_.mesh().from(3 * face + 1));
-  if (!closed) mesh_.polygons.push_back(levels_.mesh().to(3 * star.back() + 1));
-  const std::size_t size = mesh_.polygons.size() - begin;
-  add_triangles(i, std::span(mesh_.polygons).subspan(begin));
-  mesh_.sectors.push_back({static_cast<std::uint16_t>(size), 0, 0, closed ? SectorShape::Closed : SectorShape::Open});
-  mesh_.polygon_begin.push_back(mesh_.polygons.size());
+/// Adds the record of the round's i-th vertex. False where it has too many wedges.
+bool CompactDecoder::add_record(std::size_t i) {
+  const SectorList& sectors = levels_.sectors();
+  const std::vector<Index>& ends = levels_.vertices().sector_end;
+  const Index begin = i == 0 ? 0 : ends[i - 1];
+  const auto vertex = static_cast<Index>(mesh_.positions.size());
+  if (levels_.wedges().count(vertex) > kMostWedgesEach) return false;
+  freed_.clear();
+  for (Index s = begin; s < ends[i]; ++s) add_sector(s);
+  mesh_.slots.insert(mesh_.slots.end(), freed_.begin(), freed_.end());
+  std::size_t at = 0;
+  for (Index s = begin; s < ends[i]; ++s) {
+    const std::span<const Index> fine = sectors.fine_of(s);
+    const std::size_t kept = sectors.coarse_of(s).size();
+    for (std::size_t k = 0; k < fine.size(); ++k) {
+      if (slots_.size() <= fine[k]) slots_.resize(fine[k] + 1);
+      slots_[fine[k]] = k < kept ? freed_[at++] : group_faces_[sectors.sectors[s].group]++;
+    }
+  }
   mesh_.sector_begin.push_back(static_cast<Index>(mesh_.sectors.size()));
-  mesh_.wedge_vertex.push_back(static_cast<Index>(mesh_.positions.size()));
+  mesh_.wedge_vertex.resize(levels_.wedges().end(vertex), vertex);
   mesh_.record_wedge_begin.push_back(static_cast<Index>(mesh_.wedge_vertex.size()));
   // Up to its end, all of a round has the errors that it begins with.
   mesh_.deviation.push_back(mesh_.deviation.back());
   mesh_.curvature_error.push_back(mesh_.curvature_error.back());
-  add_position(levels_.positions()[mesh_.wedge_vertex.size() - 1]);
+  add_position(levels_.positions()[vertex]);
+  return true;
 }
 
 Result<void> CompactDecoder::read_round(BitCoder& coder) {
   const std::uint64_t face_count = levels_.mesh().face_count();
   if (face_count > faces_left_) return fail(ErrorCode::LimitExceeded, "too many rounds for so few faces");
   faces_left_ -= face_count;
-  if (!levels_.code_places(coder, nullptr)) return broken("a round has no patches");
-  if (levels_.mesh().face_count() > header_.face_count()) return broken("a round has too many patches");
+  if (!levels_.code_patches(coder, nullptr)) return broken("a round has no patches");
+  if (!levels_.code_places(coder, {})) return broken("a round's patches do not belong together");
+  if (!levels_.code_wedges(coder, nullptr)) return broken("a round has wedges that do not fit");
   if (!levels_.code_points(coder, {})) return broken("a position lies off the grid");
-  for (std::size_t i = 0; i < levels_.round().vertices.size(); ++i) add_record(i);
+  if (!levels_.code_attributes(coder, {})) return broken("an attribute is out of its range");
+  Index loose = 0;
+  if (!levels_.code_loose_count(coder, loose)) return broken("a round has no vertices, or too many");
+  for (; loose > 0; --loose)
+    if (LooseVertex read; !levels_.code_loose_vertex(coder, read)) return broken("a loose record does not fit");
+  if (!levels_.code_attributes(coder, {})) return broken("an attribute is out of its range");
+  for (std::size_t i = 0; i < levels_.vertices().count(); ++i)
+    if (!add_record(i)) return broken("a vertex has too many wedges");
+  add_attributes();
   mesh_.round_begin.push_back(static_cast<Index>(mesh_.record_count()));
   LODESTONE_CHECK(check_held_bytes(mesh_, most_bytes_));
   return read_errors(coder);
@@ -123,13 +173,15 @@ Result<void> CompactDecoder::read_chunk(const CompactChunkEntry& chunk, std::spa
   BitCoder coder(bytes);
   if (chunk_count_ == 0) LODESTONE_CHECK(read_base(coder));
   const std::size_t records = mesh_.record_count(), faces = levels_.mesh().face_count();
+  const std::size_t wedges = levels_.wedges().size();
   for (std::uint32_t round = 0; round < chunk.round_count; ++round) LODESTONE_CHECK(read_round(coder));
   if (mesh_.record_count() - records != chunk.record_count)
     return broken(text("has ", mesh_.record_count() - records, " records where ", chunk.record_count, " are due"));
-  if (levels_.mesh().face_count() - faces != chunk.added_faces())
+  if (levels_.mesh().face_count() - faces != chunk.face_count)
     return broken("adds another number of faces than is due");
+  if (levels_.wedges().size() - wedges != chunk.wedge_count) return broken("adds another number of wedges than is due");
   if (deviation_code_ != chunk.deviation_code) return broken("ends with another deviation than is due");
-  mesh_.groups.front().face_count = static_cast<Index>(levels_.mesh().face_count());
+  for (std::size_t g = 0; g < mesh_.groups.size(); ++g) mesh_.groups[g].face_count = group_faces_[g];
   return {};
 }
 

@@ -38,8 +38,10 @@ class CompactDecoder {
   Result<void> read_round(BitCoder& coder);
   Result<void> read_errors(BitCoder& coder);
   void add_position(const Vec3i& position);
-  void add_record(std::size_t i);
-  void add_triangles(std::size_t i, std::span<const Index> polygon);
+  void add_attributes();
+  void begin_mesh(const BaseMesh& base);
+  bool add_record(std::size_t i);
+  void add_sector(std::size_t s);
 
   CompactHeader header_;
   std::size_t chunk_count_ = 0;
@@ -47,6 +49,9 @@ class CompactDecoder {
   ErrorCoder errors_;
   std::uint64_t faces_left_;  // that walks may still visit
   int deviation_code_ = 0;
+  std::vector<Index> slots_;        // by face of the level: in its group
+  std::vector<Index> group_faces_;  // by group: of the level
+  std::vector<Index> freed_;        // slots of the coarse faces of a record
   ProgressiveMesh& mesh_;
   std::uint64_t most_bytes_;
 };

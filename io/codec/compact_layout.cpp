@@ -18,6 +18,10 @@ constexpr std::size_t kFixedBytes = 16;  // magic, version, header_bytes
 constexpr std::size_t kChecksumBytes = 4;
 constexpr std::uint64_t kMostFaces = std::uint64_t{1} << 30U;
 
+constexpr std::uint64_t zigzag(std::int64_t x) {
+  return x < 0 ? 2 * static_cast<std::uint64_t>(-(x + 1)) + 1 : 2 * static_cast<std::uint64_t>(x);
+}
+
 auto broken(const std::string& message, std::size_t at) { return fail(ErrorCode::Malformed, message, at); }
 
 /// Takes numbers off a header; what is beyond its end reads as 0 and is remembered.
@@ -47,6 +51,14 @@ class HeaderReader {
     if (value >= kMostFaces) return overrun_ = true, 0;
     return static_cast<std::uint32_t>(value);
   }
+  /// A count that lies so far from another, in a direction.
+  std::uint32_t count_beside(std::int64_t other, int direction) {
+    const std::uint64_t code = varint();
+    const auto half = static_cast<std::int64_t>(code >> 1U);
+    const std::int64_t value = other + direction * ((code & 1U) != 0 ? -half - 1 : half);
+    if (value < 0 || value >= static_cast<std::int64_t>(kMostFaces)) return overrun_ = true, 0;
+    return static_cast<std::uint32_t>(value);
+  }
   bool overrun() const { return overrun_; }
   std::size_t at() const { return at_; }
 
@@ -56,14 +68,14 @@ class HeaderReader {
   bool overrun_ = false;
 };
 
-Result<void> check_chunk(const CompactChunkEntry& chunk, std::size_t i, std::size_t at) {
+Result<void> check_chunk(const CompactHeader& header, const CompactChunkEntry& chunk, std::size_t i, std::size_t at) {
   const std::string name = text("chunk ", i);
-  if (chunk.record_count > kMostRecordsPerByte * chunk.byte_length)
-    return broken(text(name, ": ", chunk.record_count, " records in ", chunk.byte_length, " bytes"), at);
+  if (chunk.byte_length < header.least_bytes(chunk, i == 0))
+    return broken(text(name, ": ", chunk.record_count, " records, ", chunk.face_count, " faces and ", chunk.wedge_count,
+                       " wedges in ", chunk.byte_length, " bytes"),
+                  at);
   if (chunk.round_count > chunk.record_count)
     return broken(text(name, ": ", chunk.round_count, " rounds of ", chunk.record_count, " records"), at);
-  if (chunk.open_count > chunk.record_count)
-    return broken(text(name, ": ", chunk.open_count, " open records of ", chunk.record_count), at);
   if (i > 0 && chunk.round_count == 0) return broken(name + ": no rounds", at);
   return {};
 }
@@ -81,29 +93,88 @@ Result<void> check_header(const CompactHeader& header) {
     if (!std::isfinite(origin + header.grid.range)) return wrong("grid has no end");
   if (!is_error(header.deviation.largest()) || !is_error(header.curvature.largest()))
     return wrong("errors are negative or not finite");
-  const std::uint64_t base = std::uint64_t{header.base_point_count} + header.base_face_count;
   if (header.chunks.empty()) return wrong("no chunks");
-  if (base > kMostBasePerByte * header.chunks.front().byte_length)
-    return wrong(text("base mesh of ", base, " points and faces in ", header.chunks.front().byte_length, " bytes"));
-  if (header.base_vertex_count > header.base_point_count)
-    return wrong(text("base mesh of ", header.base_vertex_count, " vertices at ", header.base_point_count, " points"));
-  if (header.base_face_count + header.face_count() >= kMostFaces)
-    return fail(ErrorCode::LimitExceeded, text("more than ", kMostFaces, " faces"), kFixedBytes);
+  if (std::max({header.face_count(), header.wedge_count(), header.vertex_count()}) >= kMostFaces)
+    return fail(ErrorCode::LimitExceeded, text("more than ", kMostFaces, " faces, wedges or vertices"), kFixedBytes);
   return {};
 }
 
-CompactHeader read_fields(HeaderReader& in) {
-  CompactHeader header;
+Result<void> read_groups(HeaderReader& in, CompactHeader& header) {
+  const std::uint64_t count = in.varint();
+  if (count == 0 || count > kMaxGroups) return broken(text("mesh of ", count, " groups"), in.at());
+  for (std::uint64_t i = 0; i < count && !in.overrun(); ++i) {
+    const auto material = static_cast<Index>(in.varint());
+    header.groups.push_back({material, in.count()});
+  }
+  return {};
+}
+
+Result<AttributeSpec> read_attribute(HeaderReader& in) {
+  AttributeSpec spec;
+  const auto wrong = [&](const std::string& message) { return broken("attribute " + message, in.at()); };
+  const std::uint64_t name_bytes = in.varint();
+  if (name_bytes > kMaxNameBytes) return wrong(text("has a name of ", name_bytes, " bytes"));
+  for (std::uint64_t i = 0; i < name_bytes; ++i) spec.name.push_back(static_cast<char>(in.get<std::uint8_t>()));
+  const auto type = in.get<std::uint16_t>();
+  spec.type = static_cast<ComponentType>(type);
+  if (type < 5120 || type > 5126 || type == 5124) return wrong(text("has components of type ", type));
+  spec.component_count = in.get<std::uint8_t>();
+  if (spec.component_count == 0 || spec.component_count > 16)
+    return wrong(text("has ", int{spec.component_count}, " components"));
+  spec.normalized = in.get<std::uint8_t>() != 0;
+  const auto coding = in.get<std::uint8_t>();
+  if (coding >= static_cast<std::uint8_t>(AttributeCoding::kCount)) return wrong(text("has coding ", int{coding}));
+  spec.coding = static_cast<AttributeCoding>(coding);
+  spec.bits = in.get<std::uint8_t>();
+  const bool is_float = spec.type == ComponentType::Float32;
+  if (is_float ? spec.bits < kLeastAttributeBits || spec.bits > kMostAttributeBits : spec.bits != 0)
+    return wrong(text("has ", int{spec.bits}, " bits"));
+  const int components = spec.component_count;
+  if ((spec.coding == AttributeCoding::Directions && (!is_float || components < 3 || components > 4)) ||
+      (spec.coding == AttributeCoding::Texture && components != 2))
+    return wrong(text("has ", components, " components for coding ", int{coding}));
+  if (!is_float || spec.coding == AttributeCoding::Directions) return spec;
+  for (int c = 0; c < components; ++c) spec.low.push_back(in.get<float>());
+  spec.range = in.get<float>();
+  for (const float low : spec.low)
+    if (!std::isfinite(low) || !std::isfinite(low + spec.range) || !(spec.range >= 0))
+      return wrong("has a grid that is not finite");
+  return spec;
+}
+
+Result<void> read_attributes(HeaderReader& in, CompactHeader& header) {
+  const std::uint64_t count = in.varint();
+  if (count > kMaxAttributes) return broken(text("mesh of ", count, " attributes"), in.at());
+  for (std::uint64_t i = 0; i < count; ++i) {
+    LODESTONE_TRY(AttributeSpec spec, read_attribute(in));
+    header.attributes.push_back(std::move(spec));
+  }
+  return {};
+}
+
+Result<void> read_fields(HeaderReader& in, CompactHeader& header) {
   header.grid_bits = in.get<std::uint8_t>();
   for (float* value : {&header.grid.origin.x, &header.grid.origin.y, &header.grid.origin.z, &header.grid.range})
     *value = in.get<float>();
-  header.material = static_cast<Index>(in.varint());
-  header.base_point_count = in.count();
+  LODESTONE_CHECK(read_groups(in, header));
+  LODESTONE_CHECK(read_attributes(in, header));
   header.base_vertex_count = in.count();
-  header.base_face_count = in.count();
+  header.base_wedge_count = in.count();
   header.deviation = ErrorScale(in.get<float>());
   header.curvature = ErrorScale(in.get<float>());
-  return header;
+  return {};
+}
+
+void append_attribute(std::vector<std::byte>& out, const AttributeSpec& spec) {
+  append_varint(out, spec.name.size());
+  for (const char c : spec.name) append(out, c);
+  append(out, static_cast<std::uint16_t>(spec.type));
+  append(out, spec.component_count);
+  append(out, static_cast<std::uint8_t>(spec.normalized ? 1 : 0));
+  append(out, static_cast<std::uint8_t>(spec.coding));
+  append(out, spec.bits);
+  for (const float low : spec.low) append(out, low);
+  if (!spec.low.empty()) append(out, spec.range);
 }
 
 }  // namespace
@@ -126,15 +197,15 @@ int ErrorScale::code(float error) const {
 
 std::uint32_t checksum32(std::span<const std::byte> bytes) { return static_cast<std::uint32_t>(checksum64(bytes)); }
 
-std::uint64_t CompactHeader::face_count() const {
-  std::uint64_t count = base_face_count;
-  for (const CompactChunkEntry& chunk : chunks) count += chunk.added_faces();
+std::uint64_t CompactHeader::base_face_count() const {
+  std::uint64_t count = 0;
+  for (const CompactGroup& group : groups) count += group.base_face_count;
   return count;
 }
 
 std::vector<CompactChunk> compact_chunks(const CompactHeader& header) {
   std::vector<CompactChunk> chunks;
-  std::uint64_t offset = header.header_bytes, faces = header.base_face_count;
+  std::uint64_t offset = header.header_bytes, faces = header.base_face_count(), wedges = header.base_wedge_count;
   Index record = 0;
   for (const CompactChunkEntry& entry : header.chunks) {
     CompactChunk chunk;
@@ -144,13 +215,51 @@ std::vector<CompactChunk> compact_chunks(const CompactHeader& header) {
     chunk.record_count = entry.record_count;
     offset += entry.byte_length;
     record += entry.record_count;
-    faces += entry.added_faces();
+    faces += entry.face_count;
+    wedges += entry.wedge_count;
     chunk.vertex_count = std::uint64_t{header.base_vertex_count} + record;
+    chunk.wedge_count = wedges;
     chunk.face_count = faces;
     chunk.deviation = header.deviation.value(entry.deviation_code);
     chunks.push_back(chunk);
   }
   return chunks;
+}
+
+std::uint64_t CompactHeader::face_count() const {
+  std::uint64_t count = base_face_count();
+  for (const CompactChunkEntry& chunk : chunks) count += chunk.face_count;
+  return count;
+}
+
+std::uint64_t CompactHeader::wedge_count() const {
+  std::uint64_t count = base_wedge_count;
+  for (const CompactChunkEntry& chunk : chunks) count += chunk.wedge_count;
+  return count;
+}
+
+std::uint64_t CompactHeader::vertex_count() const {
+  std::uint64_t count = base_vertex_count;
+  for (const CompactChunkEntry& chunk : chunks) count += chunk.record_count;
+  return count;
+}
+
+std::uint64_t CompactHeader::numbers_each() const {
+  std::uint64_t count = 0;
+  for (const AttributeSpec& spec : attributes) count += spec.component_count;
+  return count;
+}
+
+std::uint64_t CompactHeader::least_bytes(const CompactChunkEntry& chunk, bool is_first) const {
+  const auto bytes_for = [](std::uint64_t count, std::uint64_t per_byte) { return (count + per_byte - 1) / per_byte; };
+  const std::uint64_t wedges = chunk.wedge_count + std::uint64_t{is_first ? base_wedge_count : 0};
+  std::uint64_t least = std::max(
+      {bytes_for(chunk.record_count, kMostRecordsPerByte), bytes_for(chunk.face_count, 2 * kMostRecordsPerByte),
+       bytes_for(chunk.wedge_count, kMostWedgesPerByte), bytes_for(wedges * numbers_each(), kMostNumbersPerByte)});
+  if (is_first)
+    least = std::max(
+        least, bytes_for(std::uint64_t{base_vertex_count} + base_wedge_count + base_face_count(), kMostBasePerByte));
+  return least;
 }
 
 std::vector<std::byte> write_compact_header(const CompactHeader& header) {
@@ -162,8 +271,15 @@ std::vector<std::byte> write_compact_header(const CompactHeader& header) {
   append(out, static_cast<std::uint8_t>(header.grid_bits));
   for (const float value : {header.grid.origin.x, header.grid.origin.y, header.grid.origin.z, header.grid.range})
     append(out, value);
-  for (const Index count : {header.material, header.base_point_count, header.base_vertex_count, header.base_face_count})
-    append_varint(out, count);
+  append_varint(out, header.groups.size());
+  for (const CompactGroup& group : header.groups) {
+    append_varint(out, group.material);
+    append_varint(out, group.base_face_count);
+  }
+  append_varint(out, header.attributes.size());
+  for (const AttributeSpec& spec : header.attributes) append_attribute(out, spec);
+  append_varint(out, header.base_vertex_count);
+  append_varint(out, header.base_wedge_count);
   append(out, header.deviation.largest());
   append(out, header.curvature.largest());
   append_varint(out, header.chunks.size());
@@ -171,7 +287,8 @@ std::vector<std::byte> write_compact_header(const CompactHeader& header) {
     append_varint(out, chunk.byte_length);
     append_varint(out, chunk.round_count);
     append_varint(out, chunk.record_count);
-    append_varint(out, chunk.open_count);
+    append_varint(out, zigzag(2 * std::int64_t{chunk.record_count} - std::int64_t{chunk.face_count}));
+    append_varint(out, zigzag(std::int64_t{chunk.wedge_count} - std::int64_t{chunk.record_count}));
     append(out, chunk.deviation_code);
     append(out, chunk.checksum);
   }
@@ -195,7 +312,8 @@ Result<CompactHeader> read_compact_header(std::span<const std::byte> bytes) {
     return broken("header's checksum is wrong", covered.size());
 
   HeaderReader in(covered, kFixedBytes);
-  CompactHeader header = read_fields(in);
+  CompactHeader header;
+  LODESTONE_CHECK(read_fields(in, header));
   header.header_bytes = header_bytes;
   const std::uint64_t chunk_count = in.varint();
   for (std::uint64_t i = 0; i < chunk_count && !in.overrun(); ++i) {
@@ -203,12 +321,13 @@ Result<CompactHeader> read_compact_header(std::span<const std::byte> bytes) {
     chunk.byte_length = in.varint();
     chunk.round_count = in.count();
     chunk.record_count = in.count();
-    chunk.open_count = in.count();
+    chunk.face_count = in.count_beside(2 * std::int64_t{chunk.record_count}, -1);
+    chunk.wedge_count = in.count_beside(chunk.record_count, 1);
     chunk.deviation_code = in.get<std::uint8_t>();
     chunk.checksum = in.get<std::uint32_t>();
     if (chunk.byte_length >= std::uint64_t{1} << 40U)
       return broken(text("chunk ", i, " of ", chunk.byte_length, " bytes"), in.at());
-    LODESTONE_CHECK(check_chunk(chunk, static_cast<std::size_t>(i), in.at()));
+    LODESTONE_CHECK(check_chunk(header, chunk, static_cast<std::size_t>(i), in.at()));
     header.chunks.push_back(chunk);
   }
   if (in.overrun()) return broken("header's numbers go beyond its end", covered.size());

@@ -8,6 +8,7 @@
 #include <lodestone/core/result.h>
 #include <lodestone/io/compact_stream.h>
 
+#include "codec/attribute_spec.h"
 #include "codec/bit_coder.h"
 #include "codec/number_coder.h"
 
@@ -19,9 +20,13 @@ inline constexpr std::uint16_t kCompactMajor = 3;
 inline constexpr std::uint16_t kCompactMinor = 0;
 inline constexpr int kLeastGridBits = 8;
 inline constexpr int kMostGridBits = 16;
-inline constexpr std::uint64_t kMostRecordsPerByte = 8;  ///< of a chunk; the encoder pads it
-inline constexpr std::uint64_t kMostBasePerByte = 8;     ///< points and faces of the base mesh; the same
-inline constexpr std::uint64_t kMostFacesWalked = 256;   ///< over all rounds, for each face of the full mesh
+inline constexpr int kLeastAttributeBits = 2;
+inline constexpr int kMostAttributeBits = 24;
+inline constexpr std::uint64_t kMostRecordsPerByte = 8;    ///< of a chunk; the encoder pads it
+inline constexpr std::uint64_t kMostBasePerByte = 8;       ///< vertices, wedges and faces of the base mesh; the same
+inline constexpr std::uint64_t kMostWedgesPerByte = 8;     ///< that a chunk adds; the same
+inline constexpr std::uint64_t kMostNumbersPerByte = 256;  ///< of attributes that a chunk adds; the same
+inline constexpr std::uint64_t kMostFacesWalked = 256;     ///< over all rounds, for each face of the full mesh
 
 /// Returns the low half of XXH64.
 std::uint32_t checksum32(std::span<const std::byte> bytes);
@@ -43,26 +48,38 @@ struct CompactChunkEntry {
   std::uint64_t byte_length = 0;
   std::uint32_t round_count = 0;
   std::uint32_t record_count = 0;
-  std::uint32_t open_count = 0;     ///< records that add one face; the others add two
+  std::uint32_t face_count = 0;     ///< faces that its records add
+  std::uint32_t wedge_count = 0;    ///< wedges that its records add
   std::uint8_t deviation_code = 0;  ///< of the level after the chunk
   std::uint32_t checksum = 0;       ///< see checksum32
+};
 
-  std::uint64_t added_faces() const { return 2 * std::uint64_t{record_count} - open_count; }
+struct CompactGroup {
+  Index material = 0;
+  Index base_face_count = 0;
 };
 
 struct CompactHeader {
   std::uint32_t header_bytes = 0;  ///< up to the first chunk
   int grid_bits = 0;
   CompactGrid grid;
-  Index material = 0;
-  Index base_point_count = 0;
-  Index base_vertex_count = 0;  ///< fewer than points where the mesh has several sheets
-  Index base_face_count = 0;
+  std::vector<CompactGroup> groups;
+  std::vector<AttributeSpec> attributes;
+  Index base_vertex_count = 0;
+  Index base_wedge_count = 0;
   ErrorScale deviation;
   ErrorScale curvature;
   std::vector<CompactChunkEntry> chunks;
 
+  std::uint64_t base_face_count() const;
+  /// Of the full mesh.
   std::uint64_t face_count() const;
+  std::uint64_t wedge_count() const;
+  std::uint64_t vertex_count() const;
+  /// Numbers of all attributes of a wedge.
+  std::uint64_t numbers_each() const;
+  /// The fewest bytes that a chunk has; the first one holds the base mesh, too.
+  std::uint64_t least_bytes(const CompactChunkEntry& chunk, bool is_first) const;
 };
 
 /// Returns where the chunks lie, and what they lead to.

@@ -10,8 +10,10 @@
 #include <lodestone/core/detail/try.h>
 
 #include "base/bytes.h"
+#include "codec/attribute_rounding.h"
 #include "codec/compact_layout.h"
 #include "codec/level_coder.h"
+#include "codec/round_planner.h"
 #include "stream/stream_layout.h"
 
 namespace lodestone {
@@ -25,26 +27,20 @@ constexpr std::size_t kLeastChunkBytes = 1024;
 auto unsupported(const std::string& message) { return fail(ErrorCode::Unsupported, "compact stream: " + message); }
 
 Result<void> check(const ProgressiveMesh& mesh, const CompactOptions& options) {
+  const auto wrong = [](const std::string& message) {
+    return fail(ErrorCode::InvalidArgument, "compact stream: " + message);
+  };
   if (options.grid_bits < kLeastGridBits || options.grid_bits > kMostGridBits)
-    return fail(ErrorCode::InvalidArgument, text("compact stream: grid of ", options.grid_bits, " bits is not of ",
-                                                 kLeastGridBits, " to ", kMostGridBits));
+    return wrong(text("grid of ", options.grid_bits, " bits is not of ", kLeastGridBits, " to ", kMostGridBits));
   if (options.grid && !(options.grid->range > 0 && std::isfinite(options.grid->range)))
-    return fail(ErrorCode::InvalidArgument, "compact stream: grid has no size");
-  if (!mesh.attributes.empty()) return unsupported(text("mesh has ", mesh.attributes.size(), " attributes"));
-  if (mesh.groups.size() != 1) return unsupported(text("mesh has ", mesh.groups.size(), " groups"));
-  for (std::size_t k = 0; k < mesh.record_count(); ++k) {
-    const Index s = mesh.sector_begin[k];
-    const std::string name = text("record ", k);
-    if (mesh.sector_begin[k + 1] != s + 1)
-      return unsupported(text(name, " has ", mesh.sector_begin[k + 1] - s, " sectors"));
-    if (mesh.record_wedge_begin[k + 1] != mesh.record_wedge_begin[k] + 1)
-      return unsupported(text(name, " has ", mesh.record_wedge_begin[k + 1] - mesh.record_wedge_begin[k], " wedges"));
-    const SectorHeader& sector = mesh.sectors[s];
-    if (sector.shape != SectorShape::Open && sector.shape != SectorShape::Closed)
-      return unsupported(name + " is of a piece that vanishes, or of lines that meet");
-    if (sector.polygon_size > kMostPatchCorners)
-      return unsupported(text(name, " has a polygon of ", sector.polygon_size, " corners"));
-  }
+    return wrong("grid has no size");
+  for (const int bits : {options.normal_bits, options.texture_bits, options.other_bits})
+    if (bits < kLeastAttributeBits || bits > kMostAttributeBits)
+      return wrong(text("attributes of ", bits, " bits are not of ", kLeastAttributeBits, " to ", kMostAttributeBits));
+  if (mesh.groups.empty()) return wrong("mesh has no face group");
+  if (mesh.groups.size() > kMaxGroups || mesh.attributes.size() > kMaxAttributes)
+    return fail(ErrorCode::LimitExceeded, text("compact stream: ", mesh.groups.size(), " groups and ",
+                                               mesh.attributes.size(), " attributes are too many"));
   return {};
 }
 
@@ -66,53 +62,78 @@ std::vector<float> largest_from(std::vector<float> errors) {
   return errors;
 }
 
+std::uint64_t full_face_count(const ProgressiveMesh& mesh) {
+  std::uint64_t count = 0;
+  for (const FaceGroup& group : mesh.groups) count += group.face_count;
+  return count;
+}
+
+LevelLimits limits_of(const ProgressiveMesh& mesh, const CompactOptions& options) {
+  LevelLimits limits;
+  limits.grid_bits = options.grid_bits;
+  limits.group_count = static_cast<Index>(mesh.groups.size());
+  limits.most_vertices = mesh.positions.size();
+  limits.most_wedges = mesh.wedge_vertex.size();
+  limits.most_faces = full_face_count(mesh);
+  return limits;
+}
+
+std::vector<AttributeSpec> specs_of(const ProgressiveMesh& mesh, const CompactOptions& options) {
+  std::vector<AttributeSpec> specs;
+  for (const Attribute& attribute : mesh.attributes) specs.push_back(choose_spec(attribute, options));
+  return specs;
+}
+
 /// Encodes a progressive mesh. Pre: `check` found nothing.
 class CompactEncoder {
  public:
-  CompactEncoder(const ProgressiveMesh& mesh, const CompactOptions& options) : mesh_(mesh), levels_(options.grid_bits) {
+  CompactEncoder(const ProgressiveMesh& mesh, const CompactOptions& options)
+      : mesh_(mesh),
+        specs_(specs_of(mesh, options)),
+        levels_(limits_of(mesh, options), specs_),
+        coded_(mesh),
+        planner_(mesh, coded_, levels_.mesh()) {
     header_.grid_bits = options.grid_bits;
     header_.grid = options.grid ? *options.grid : box_of(mesh);
-    header_.material = mesh.groups.front().material;
-    point_of_.assign(mesh.wedge_vertex.size(), kNoIndex);
+    header_.attributes = specs_;
+    for (const FaceGroup& group : mesh.groups)
+      header_.groups.push_back({group.material, static_cast<Index>(group.base_corners.size() / 3)});
+    for (std::size_t a = 0; a < specs_.size(); ++a) numbers_.push_back(rounded(mesh.attributes[a], specs_[a]));
     deviation_ = largest_from(mesh.deviation);
     curvature_ = largest_from(mesh.curvature_error);
-    face_of_.assign(mesh.groups.front().face_count, kNoIndex);
-    made_in_.assign(mesh.groups.front().face_count, 0);
+    result_.sizes.attributes.assign(specs_.size(), 0);
   }
 
   Result<CompactStream> run();
 
  private:
-  // A record's sector, which is the only one.
-  const SectorHeader& sector(Index record) const { return mesh_.sectors[record]; }
-  std::span<const Index> polygon(Index record) const {
-    return std::span(mesh_.polygons).subspan(mesh_.polygon_begin[record], sector(record).polygon_size);
-  }
-  std::span<const Index> slots(Index record) const {
-    return std::span(mesh_.slots).subspan(mesh_.slot_begin(record), sector(record).polygon_size - 2U);
-  }
-  Index point(Index wedge) const { return point_of_[wedge]; }
-
-  Vec3i grid_position(Index wedge) const;
+  Vec3i grid_position(Index vertex) const;
   float widened(float deviation) const;
   Result<void> write_base();
-  void find_first_slots();
-  Index take_round(Index first);
-  bool is_ready(Index record, Index round_first);
+  BaseMesh number_base();
+  void number_base_wedges(const std::vector<Index>& vertices, BaseMesh& base);
   Result<void> write_round(Index first, Index end);
-  Result<void> plan_round(Index first, Index end, PatchPlan& plan);
-  Result<void> plan_ear(Index record, PatchPlan& plan);
-  Index find_border(Index from, Index to);
-  Index closing_edge(Index record) const;
-  Result<std::vector<Vec3i>> number_round(const PatchPlan& plan, std::size_t count);
-  bool number_star(Index record, std::size_t i);
+  void number_stars();
+  void join_stars();
+  void plan_wedges();
+  void plan_star(Index star, Index record);
+  Index local_number(Index wedge);
+  Result<void> write_loose(Index record);
+  bool describe_loose(Index record, LooseRecord& loose);
+  bool find_start(Index sector, LooseRecord::Sector& loose) const;
+  bool write_attributes(bool of_base);
+  void add_extra(Index record);
   void write_errors(Index position);
   void end_chunk();
   void spend(double& part);
 
   const ProgressiveMesh& mesh_;
-  CompactHeader header_;
+  std::vector<AttributeSpec> specs_;
+  std::vector<std::vector<std::int32_t>> numbers_;  // by attribute: of the mesh's wedges
   LevelCoder levels_;
+  CodedNumbers coded_;
+  RoundPlanner planner_;
+  CompactHeader header_;
   ErrorCoder errors_;
   BitCoder coder_;
   double bits_at_ = 0;  // where the last part ended
@@ -122,25 +143,25 @@ class CompactEncoder {
   CompactStream result_;
 
   std::vector<float> deviation_, curvature_;  // by position; they never rise
-  std::vector<Index> point_of_;               // by wedge of the mesh
-  std::vector<Index> face_of_;                // by slot of the mesh
-  std::vector<Index> made_in_;                // by slot: the round that wrote it last
-  std::vector<Index> first_slot_;             // by record: of the faces it appends
-  Index round_ = 0;
-  std::vector<Index> patch_records_;                  // of the round at hand: by planned patch
-  std::unordered_map<Index, Index> ear_records_;      // by half-edge
-  std::unordered_map<std::uint64_t, Index> borders_;  // of the level before a round: half-edges by their ends
-  Index borders_of_ = 0;                              // which round's
+  Index vertex_count_ = 0, wedge_count_ = 0;  // that are coded, or numbered for it
+
+  // Of the round at hand.
+  std::vector<Index> star_records_;  // by star
+  std::vector<Index> star_corners_;  // by star: where its half-edges begin in the patches' polygons
+  std::vector<Index> joins_;         // by star
+  WedgePlan wedge_plan_;
+  std::vector<Index> new_wedges_;  // of the mesh, in the order of their numbers, that have no attributes yet
+  std::vector<Index> own_wedges_;  // of the vertex at hand, in the order of their numbers
 };
 
-Vec3i CompactEncoder::grid_position(Index wedge) const {
+Vec3i CompactEncoder::grid_position(Index vertex) const {
   const auto on_axis = [&](float value, float origin) {
     const double top = static_cast<double>((1 << header_.grid_bits) - 1);
     const double steps =
         (static_cast<double>(value) - static_cast<double>(origin)) * top / static_cast<double>(header_.grid.range);
     return static_cast<std::int64_t>(std::floor(std::clamp(steps, 0.0, top) + 0.5));
   };
-  const Vec3f& p = mesh_.positions[mesh_.wedge_vertex[wedge]];
+  const Vec3f& p = mesh_.positions[vertex];
   const Vec3f& origin = header_.grid.origin;
   return {on_axis(p.x, origin.x), on_axis(p.y, origin.y), on_axis(p.z, origin.z)};
 }
@@ -167,172 +188,232 @@ void CompactEncoder::write_errors(Index position) {
   spend(result_.sizes.errors);
 }
 
-/// Numbers base points in the order in which faces use them; those without faces come last.
-Result<void> CompactEncoder::write_base() {
-  BaseMesh base;
-  std::vector<Index> wedges;
-  const auto number = [&](Index wedge) {
-    if (point_of_[wedge] != kNoIndex) return;
-    point_of_[wedge] = static_cast<Index>(wedges.size());
-    wedges.push_back(wedge);
-  };
-  const std::vector<Index>& corners = mesh_.groups.front().base_corners;
-  for (const Index wedge : corners) number(wedge);
-  for (Index wedge = 0; wedge < mesh_.base_wedge_count; ++wedge) number(wedge);
-  for (const Index wedge : corners) base.corners.push_back(point(wedge));
-  std::unordered_map<Index, Index> first_of_vertex;
-  for (Index i = 0; i < wedges.size(); ++i) {
-    base.positions.push_back(grid_position(wedges[i]));
-    base.same_as.push_back(first_of_vertex.try_emplace(mesh_.wedge_vertex[wedges[i]], i).first->second);
+/// Writes the attributes of the newest wedges.
+bool CompactEncoder::write_attributes(bool of_base) {
+  std::vector<std::vector<std::int32_t>> given;
+  for (std::size_t a = 0; a < specs_.size(); ++a) {
+    const std::size_t size = specs_[a].component_count;
+    std::vector<std::int32_t>& numbers = given.emplace_back();
+    for (const Index wedge : new_wedges_)
+      numbers.insert(numbers.end(), numbers_[a].begin() + static_cast<std::ptrdiff_t>(wedge * size),
+                     numbers_[a].begin() + static_cast<std::ptrdiff_t>((wedge + 1) * size));
   }
-  header_.base_point_count = static_cast<Index>(wedges.size());
-  header_.base_vertex_count = static_cast<Index>(first_of_vertex.size());
-  header_.base_face_count = static_cast<Index>(corners.size() / 3);
-  for (Index face = 0; face < header_.base_face_count; ++face) face_of_[face] = face;
+  const bool is_done = of_base ? levels_.code_base_attributes(coder_, given) : levels_.code_attributes(coder_, given);
+  new_wedges_.clear();
+  bits_at_ = coder_.bits();
+  return is_done;
+}
+
+/// Numbers the wedges of base vertices, those of each together, faces' first.
+void CompactEncoder::number_base_wedges(const std::vector<Index>& vertices, BaseMesh& base) {
+  std::vector<std::vector<Index>> wedges_of(mesh_.base_vertex_count);
+  const auto add = [&](Index wedge) {
+    std::vector<Index>& wedges = wedges_of[mesh_.wedge_vertex[wedge]];
+    if (std::find(wedges.begin(), wedges.end(), wedge) == wedges.end()) wedges.push_back(wedge);
+  };
+  for (const FaceGroup& group : mesh_.groups)
+    for (const Index wedge : group.base_corners) add(wedge);
+  for (Index wedge = 0; wedge < mesh_.base_wedge_count; ++wedge) add(wedge);
+  for (const Index vertex : vertices) {
+    base.wedge_counts.push_back(static_cast<Index>(wedges_of[vertex].size()));
+    for (const Index wedge : wedges_of[vertex]) {
+      coded_.wedge[wedge] = wedge_count_++;
+      new_wedges_.push_back(wedge);
+    }
+  }
+  for (const FaceGroup& group : mesh_.groups)
+    for (const Index wedge : group.base_corners) {
+      const std::vector<Index>& wedges = wedges_of[mesh_.wedge_vertex[wedge]];
+      base.wedges.push_back(static_cast<Index>(std::find(wedges.begin(), wedges.end(), wedge) - wedges.begin()));
+    }
+}
+
+/// Numbers base vertices in the order in which faces use them; those without faces come last.
+BaseMesh CompactEncoder::number_base() {
+  BaseMesh base;
+  std::vector<Index> vertices;
+  const auto number = [&](Index vertex) {
+    if (coded_.vertex[vertex] != kNoIndex) return;
+    coded_.vertex[vertex] = vertex_count_++;
+    vertices.push_back(vertex);
+  };
+  for (Index g = 0; g < mesh_.groups.size(); ++g) {
+    const std::vector<Index>& corners = mesh_.groups[g].base_corners;
+    for (Index c = 0; c < corners.size(); ++c) {
+      number(mesh_.wedge_vertex[corners[c]]);
+      base.corners.push_back(coded_.vertex[mesh_.wedge_vertex[corners[c]]]);
+      if (c % 3 == 0) coded_.face[g][c / 3] = static_cast<Index>(base.groups.size());
+      if (c % 3 == 0) base.groups.push_back(g);
+    }
+  }
+  for (Index vertex = 0; vertex < mesh_.base_vertex_count; ++vertex) number(vertex);
+  for (const Index vertex : vertices) base.positions.push_back(grid_position(vertex));
+  number_base_wedges(vertices, base);
+  return base;
+}
+
+Result<void> CompactEncoder::write_base() {
+  BaseMesh base = number_base();
+  header_.base_vertex_count = vertex_count_;
+  header_.base_wedge_count = wedge_count_;
   header_.deviation = ErrorScale(widened(deviation_.front()));
   header_.curvature = ErrorScale(curvature_.front());
-  if (!levels_.code_base(coder_, base)) return unsupported("base mesh is not manifold");
+  if (!levels_.code_base(coder_, base)) return unsupported("base mesh names no wedges");
   spend(result_.sizes.base);
+  if (!write_attributes(true)) return unsupported("attributes of the base mesh are out of their ranges");
   write_errors(0);
   return {};
 }
 
-void CompactEncoder::find_first_slots() {
-  auto count = static_cast<Index>(mesh_.groups.front().base_corners.size() / 3);
-  for (Index k = 0; k < mesh_.record_count(); ++k) {
-    first_slot_.push_back(count);
-    count += static_cast<Index>(appended_face_count(sector(k).shape));
-  }
-}
-
-/// Whether what a record needs was there before the round.
-bool CompactEncoder::is_ready(Index record, Index round_first) {
-  const auto was_there = [&](Index wedge) { return wedge < mesh_.record_wedge_begin[round_first]; };
-  const std::span<const Index> ring = polygon(record);
-  if (!std::all_of(ring.begin(), ring.end(), was_there)) return false;
-  if (ring.size() == 2) return find_border(point(ring[1]), point(ring[0])) != kNoIndex;
-  const std::span<const Index> faces = slots(record);
-  return std::none_of(faces.begin(), faces.end(), [&](Index slot) { return made_in_[slot] == round_; });
-}
-
-/// Takes records, from one on, while none needs what another of them makes; returns the first of the next round.
-Index CompactEncoder::take_round(Index first) {
-  ++round_;
-  Index record = first;
-  for (; record < mesh_.record_count() && is_ready(record, first); ++record) {
-    const auto appended = static_cast<Index>(appended_face_count(sector(record).shape));
-    for (const Index slot : slots(record)) made_in_[slot] = round_;
-    for (Index i = 0; i < appended; ++i) made_in_[first_slot_[record] + i] = round_;
-  }
-  return record;
-}
-
-/// Returns the border half-edge between two points of the level before the round, or kNoIndex.
-Index CompactEncoder::find_border(Index from, Index to) {
-  const auto key = [](Index a, Index b) { return std::uint64_t{a} << 32U | b; };
-  if (borders_of_ != round_) {
-    borders_of_ = round_;
-    borders_.clear();
-    const PatchMesh& level = levels_.mesh();
-    for (Index h = 0; h < 3 * level.face_count(); ++h)
-      if (level.twin(h) == kNoIndex) borders_[key(level.from(h), level.to(h))] = h;
-  }
-  const auto found = borders_.find(key(from, to));
-  return found == borders_.end() ? kNoIndex : found->second;
-}
-
-Index CompactEncoder::closing_edge(Index record) const {
-  const PatchMesh& level = levels_.mesh();
-  const std::span<const Index> ring = polygon(record);
-  for (const Index slot : slots(record))
-    for (Index h = 3 * face_of_[slot]; h < 3 * face_of_[slot] + 3; ++h)
-      if (level.from(h) == point(ring.back()) && level.to(h) == point(ring.front()) && level.twin(h) == kNoIndex)
-        return h;
-  return kNoIndex;
-}
-
-Result<void> CompactEncoder::plan_ear(Index record, PatchPlan& plan) {
-  const std::span<const Index> ring = polygon(record);
-  const Index half = find_border(point(ring[1]), point(ring[0]));
-  if (half == kNoIndex) return unsupported(text("record ", record, " is at no border"));
-  plan.is_ear[half] = 1;
-  ++plan.ear_count;
-  ear_records_[half] = record;
-  return {};
-}
-
-Result<void> CompactEncoder::plan_round(Index first, Index end, PatchPlan& plan) {
-  plan.patch_of.assign(levels_.mesh().face_count(), kNoIndex);
-  plan.is_ear.assign(3 * levels_.mesh().face_count(), 0);
-  patch_records_.clear();
-  ear_records_.clear();
-  for (Index record = first; record < end; ++record) {
-    if (slots(record).empty()) {
-      LODESTONE_CHECK(plan_ear(record, plan));
-      continue;
-    }
-    const bool closed = sector(record).shape == SectorShape::Closed;
-    const Index closing = closed ? kNoIndex : closing_edge(record);
-    if (!closed && closing == kNoIndex) return unsupported(text("record ", record, " is at no border"));
-    for (const Index slot : slots(record)) plan.patch_of[face_of_[slot]] = static_cast<Index>(patch_records_.size());
-    plan.closing_edge.push_back(closing);
-    patch_records_.push_back(record);
-  }
-  return {};
-}
-
-/// Notes where the faces of a record lie among those coded; false where it was coded otherwise.
-bool CompactEncoder::number_star(Index record, std::size_t i) {
-  const PatchMesh& level = levels_.mesh();
-  const std::span<const Index> star = levels_.round().star(i), ring = polygon(record), replaced = slots(record);
-  const bool closed = sector(record).shape == SectorShape::Closed;
-  if (levels_.round().vertices[i].closed != closed || star.size() != ring.size() - (closed ? 0 : 1)) return false;
-  const auto start =
-      std::find_if(star.begin(), star.end(), [&](Index f) { return level.from(3 * f + 1) == point(ring[0]); });
-  if (start == star.end()) return false;
-  const auto turn = static_cast<std::size_t>(start - star.begin());
-  for (std::size_t j = 0; j < star.size(); ++j) {
-    const Index face = star[(turn + j) % star.size()];
-    if (level.from(3 * face + 1) != point(ring[j])) return false;
-    face_of_[j < replaced.size() ? replaced[j] : first_slot_[record] + static_cast<Index>(j - replaced.size())] = face;
-  }
-  return true;
-}
-
-/// Numbers the round's vertices as they were coded; returns their positions.
-Result<std::vector<Vec3i>> CompactEncoder::number_round(const PatchPlan& plan, std::size_t count) {
+/// Finds which record each star is of.
+void CompactEncoder::number_stars() {
   const RoundPatches& patches = levels_.patches();
-  std::vector<Index> records;
-  for (const Index half : patches.ears) records.push_back(ear_records_.at(half));
+  star_records_.clear();
+  star_corners_.clear();
+  for (const Index half : patches.ears) {
+    star_records_.push_back(planner_.fine_face(half, true).record);
+    star_corners_.push_back(kNoIndex);
+  }
   Index begin = 0;
   for (const RoundPatches::Patch& patch : patches.patches) {
-    records.push_back(patch_records_[plan.patch_of[patches.faces[begin]]]);
-    begin = patch.face_end;
+    star_records_.push_back(planner_.fine_face(patches.polygons[begin], false).record);
+    star_corners_.push_back(begin);
+    begin = patch.polygon_end;
   }
-  if (records.size() != count) return unsupported(text("a round of ", count, " records does not fit its level"));
-  std::vector<Vec3i> positions;
-  auto next = static_cast<Index>(levels_.positions().size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const Index wedge = mesh_.record_wedge_begin[records[i]];
-    point_of_[wedge] = next++;
-    positions.push_back(grid_position(wedge));
-    if (!number_star(records[i], i)) return unsupported(text("record ", records[i], " does not fit its level"));
-    chunk_.open_count += levels_.round().vertices[i].closed ? 0 : 1;
+}
+
+void CompactEncoder::join_stars() {
+  std::unordered_map<Index, Index> first;
+  joins_.clear();
+  for (Index i = 0; i < star_records_.size(); ++i)
+    joins_.push_back(first.try_emplace(star_records_[i], i).first->second);
+}
+
+/// Numbers a wedge within the vertex at hand.
+Index CompactEncoder::local_number(Index wedge) {
+  const auto found = std::find(own_wedges_.begin(), own_wedges_.end(), wedge);
+  const auto number = static_cast<Index>(found - own_wedges_.begin());
+  if (found != own_wedges_.end()) return number;
+  own_wedges_.push_back(wedge);
+  new_wedges_.push_back(wedge);
+  coded_.wedge[wedge] = wedge_count_++;
+  return number;
+}
+
+/// Numbers those wedges of a record that no face uses; they come last.
+void CompactEncoder::add_extra(Index record) {
+  for (Index w = mesh_.record_wedge_begin[record]; w < mesh_.record_wedge_begin[record + 1]; ++w) local_number(w);
+}
+
+void CompactEncoder::plan_star(Index star, Index record) {
+  const NewStars& stars = levels_.stars();
+  const std::span<const Index> faces = stars.star(star);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const bool is_ear = star_corners_[star] == kNoIndex;
+    const Index half = is_ear ? levels_.patches().ears[star] : levels_.patches().polygons[star_corners_[star] + i];
+    const RoundPlanner::FineFace& fine = planner_.fine_face(half, is_ear);
+    const SectorHeader& sector = mesh_.sectors[fine.sector];
+    const std::span<const Index> polygon = planner_.polygon(fine.sector);
+    const Index centre = local_number(mesh_.record_wedge_begin[record] + sector.wedge);
+    wedge_plan_.faces[stars.face_begin(star) + i] = {faces[i], sector.group, centre, coded_.wedge[polygon[fine.number]],
+                                                     coded_.wedge[polygon[(fine.number + 1) % polygon.size()]]};
+    coded_.face[sector.group][planner_.fine_slot(fine.sector, fine.number)] = faces[i];
   }
-  return positions;
+}
+
+/// Numbers the vertices and wedges of the round's stars.
+void CompactEncoder::plan_wedges() {
+  const NewVertices& vertices = levels_.vertices();
+  wedge_plan_.faces.assign(levels_.stars().faces.size(), {});
+  wedge_plan_.extra.clear();
+  for (std::size_t i = 0; i < vertices.count(); ++i) {
+    const Index record = star_records_[vertices.stars_of(i).front()];
+    coded_.vertex[mesh_.base_vertex_count + record] = vertex_count_++;
+    own_wedges_.clear();
+    for (const Index star : vertices.stars_of(i)) plan_star(star, record);
+    const std::size_t used = own_wedges_.size();
+    add_extra(record);
+    wedge_plan_.extra.push_back(static_cast<Index>(own_wedges_.size() - used));
+  }
+}
+
+/// Finds with which outer edge the polygon of a sector begins.
+bool CompactEncoder::find_start(Index sector, LooseRecord::Sector& loose) const {
+  std::vector<Index> wanted, found;
+  std::vector<std::array<std::uint8_t, 3>> triangles;
+  for (const Index wedge : planner_.polygon(sector)) wanted.push_back(coded_.wedge[wedge]);
+  for (loose.start = 0; loose.start < wanted.size(); ++loose.start) {
+    found.clear();
+    triangles.clear();
+    if (trace_polygon(levels_.mesh(), loose.coarse, loose.start, found, triangles) && found == wanted) return true;
+  }
+  return false;
+}
+
+bool CompactEncoder::describe_loose(Index record, LooseRecord& loose) {
+  own_wedges_.clear();
+  for (Index s = mesh_.sector_begin[record]; s < mesh_.sector_begin[record + 1]; ++s) {
+    const SectorHeader& header = mesh_.sectors[s];
+    LooseRecord::Sector& sector = loose.sectors.emplace_back();
+    sector.shape = header.shape;
+    sector.group = header.group;
+    sector.centre = local_number(mesh_.record_wedge_begin[record] + header.wedge);
+    for (Index i = 0; i + 2 < header.polygon_size; ++i) sector.coarse.push_back(planner_.coarse_face(s, i));
+    if (sector.coarse.empty())
+      sector.polygon = {coded_.wedge[planner_.polygon(s)[0]], coded_.wedge[planner_.polygon(s)[1]]};
+    else if (!find_start(s, sector))
+      return false;
+  }
+  return loose.sectors.size() <= kMostLooseSectors;
+}
+
+Result<void> CompactEncoder::write_loose(Index record) {
+  const auto wrong = [&] { return unsupported(text("record ", record, " does not fit its level")); };
+  LooseVertex vertex;
+  if (!describe_loose(record, vertex.record)) return wrong();
+  const std::size_t used = own_wedges_.size();
+  add_extra(record);
+  vertex.extra = static_cast<Index>(own_wedges_.size() - used);
+  coded_.vertex[mesh_.base_vertex_count + record] = vertex_count_++;
+  vertex.position = grid_position(mesh_.base_vertex_count + record);
+  const std::size_t first_sector = levels_.sectors().sectors.size();
+  if (!levels_.code_loose_vertex(coder_, vertex)) return wrong();
+  for (Index s = mesh_.sector_begin[record]; s < mesh_.sector_begin[record + 1]; ++s) {
+    const std::span<const Index> fine = levels_.sectors().fine_of(first_sector + s - mesh_.sector_begin[record]);
+    for (Index i = 0; i < fine.size(); ++i) coded_.face[mesh_.sectors[s].group][planner_.fine_slot(s, i)] = fine[i];
+  }
+  return {};
 }
 
 Result<void> CompactEncoder::write_round(Index first, Index end) {
-  PatchPlan plan;
-  LODESTONE_CHECK(plan_round(first, end, plan));
-  levels_.code_places(coder_, &plan);
+  const auto wrong = [&] { return unsupported(text("the round of record ", first, " does not fit its level")); };
+  const std::size_t faces = levels_.mesh().face_count(), wedges = levels_.wedges().size();
+  planner_.plan(first, end);
+  if (!levels_.code_patches(coder_, &planner_.patches())) return wrong();
+  number_stars();
+  join_stars();
+  if (!levels_.code_places(coder_, joins_)) return wrong();
   spend(result_.sizes.places);
-  LODESTONE_TRY(const std::vector<Vec3i> positions, number_round(plan, end - first));
-  levels_.code_points(coder_, positions);
+  plan_wedges();
+  if (!levels_.code_wedges(coder_, &wedge_plan_)) return wrong();
+  spend(result_.sizes.wedges);
+  std::vector<Vec3i> positions;
+  for (std::size_t i = 0; i < levels_.vertices().count(); ++i)
+    positions.push_back(grid_position(mesh_.base_vertex_count + star_records_[levels_.vertices().stars_of(i).front()]));
+  if (!levels_.code_points(coder_, positions)) return wrong();
   spend(result_.sizes.positions);
+  if (!write_attributes(false)) return wrong();
+  auto loose = static_cast<Index>(planner_.loose().size());
+  result_.loose_count += loose;
+  if (!levels_.code_loose_count(coder_, loose)) return wrong();
+  for (const Index record : planner_.loose()) LODESTONE_CHECK(write_loose(record));
+  spend(result_.sizes.wedges);
+  if (!write_attributes(false)) return wrong();
   write_errors(end);
   ++chunk_.round_count;
   chunk_.record_count += end - first;
+  chunk_.face_count += static_cast<Index>(levels_.mesh().face_count() - faces);
+  chunk_.wedge_count += static_cast<Index>(levels_.wedges().size() - wedges);
   ++result_.round_count;
   return {};
 }
@@ -341,10 +422,7 @@ void CompactEncoder::end_chunk() {
   std::vector<std::byte> bytes = coder_.finish();
   coder_ = BitCoder();
   bits_at_ = coder_.bits();
-  std::uint64_t least = (chunk_.record_count + kMostRecordsPerByte - 1) / kMostRecordsPerByte;
-  if (header_.chunks.empty())
-    least = std::max<std::uint64_t>(
-        least, (header_.base_point_count + header_.base_face_count + kMostBasePerByte - 1) / kMostBasePerByte);
+  const std::uint64_t least = header_.least_bytes(chunk_, header_.chunks.empty());
   if (bytes.size() < least) bytes.resize(least);  // zeros follow anyway
   chunk_.byte_length = bytes.size();
   chunk_.deviation_code = static_cast<std::uint8_t>(deviation_code_);
@@ -355,9 +433,8 @@ void CompactEncoder::end_chunk() {
 }
 
 Result<CompactStream> CompactEncoder::run() {
-  find_first_slots();
   LODESTONE_CHECK(write_base());
-  const std::uint64_t most_walked = kMostFacesWalked * (std::uint64_t{mesh_.groups.front().face_count} + 1);
+  const std::uint64_t most_walked = kMostFacesWalked * (full_face_count(mesh_) + 1);
   std::uint64_t walked = 0;
   const auto record_count = static_cast<Index>(mesh_.record_count());
   for (Index first = 0, end = 0; first < record_count; first = end) {
@@ -366,25 +443,19 @@ Result<CompactStream> CompactEncoder::run() {
     if (walked > most_walked)
       return fail(ErrorCode::LimitExceeded, text("compact stream: more than ", result_.round_count, " rounds of ",
                                                  record_count, " records are too many"));
-    end = take_round(first);
+    end = planner_.take_round(first);
     if (end == first) return unsupported(text("record ", first, " does not fit its level"));
     LODESTONE_CHECK(write_round(first, end));
   }
   end_chunk();
   result_.bytes = write_compact_header(header_);
   append_bytes(result_.bytes, body_);
-  const CompactSizes& s = result_.sizes;
-  result_.sizes.header = 8 * static_cast<double>(result_.bytes.size()) - s.base - s.places - s.positions - s.errors;
-  // Points of the base mesh that are one vertex have one number.
-  result_.vertex_numbers.assign(mesh_.positions.size(), kNoIndex);
-  const Index copies = header_.base_point_count - header_.base_vertex_count;
-  std::vector<Index> base_order(header_.base_point_count, kNoIndex);
-  for (Index wedge = 0; wedge < mesh_.base_wedge_count; ++wedge) base_order[point(wedge)] = mesh_.wedge_vertex[wedge];
-  Index number = 0;
-  for (const Index vertex : base_order)
-    if (result_.vertex_numbers[vertex] == kNoIndex) result_.vertex_numbers[vertex] = number++;
-  for (auto wedge = mesh_.base_wedge_count; wedge < mesh_.wedge_vertex.size(); ++wedge)
-    result_.vertex_numbers[mesh_.wedge_vertex[wedge]] = point(wedge) - copies;
+  CompactSizes& s = result_.sizes;
+  s.attributes = levels_.attributes().bits;
+  s.header = 8 * static_cast<double>(result_.bytes.size()) - s.base - s.places - s.positions - s.wedges - s.errors;
+  for (const double bits : s.attributes) s.header -= bits;
+  result_.vertex_numbers = std::move(coded_.vertex);
+  result_.wedge_numbers = std::move(coded_.wedge);
   return std::move(result_);
 }
 

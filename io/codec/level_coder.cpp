@@ -6,77 +6,97 @@
 namespace lodestone::detail {
 namespace {
 
-enum BaseBit : std::uint32_t { kIsNew, kIsCopy };
+constexpr std::uint64_t kMostCornersEach = 64;  // of polygons, for each face and vertex of the full mesh
 
-/// Rotates each face so that its largest point stands first.
-void rotate_faces(std::vector<Index>& corners) {
-  for (auto face = corners.begin(); face != corners.end(); face += 3)
-    std::rotate(face, std::max_element(face, face + 3), face + 3);
+enum Flag : std::uint32_t { kAnyJoins, kJoins, kAnyExtra, kFlags };
+
+/// Rotates a face so that its largest wedge stands first.
+void rotate_face(Index* vertices, Index* wedges) {
+  const auto first = std::max_element(wedges, wedges + 3) - wedges;
+  std::rotate(vertices, vertices + first, vertices + 3);
+  std::rotate(wedges, wedges + first, wedges + 3);
 }
 
 }  // namespace
 
-/// A corner is the next point that none had before, or one of those.
-bool LevelCoder::code_corners(BitCoder& coder, BaseMesh& base) {
-  const auto point_count = static_cast<Index>(base.positions.size());
-  Index used = 0;
-  for (Index& corner : base.corners) {
-    const std::array<std::uint32_t, 1> context = {kIsNew};
-    const bool is_new = base_bits_.code(coder, corner == used ? 1 : 0, context, 0) != 0;
-    if (!is_new) corner = coder.code_raw(corner, std::bit_width(std::max<Index>(used, 1) - 1));
-    if (is_new) corner = used++;
-    if (corner >= std::min(used, point_count)) return false;
-  }
-  return true;
-}
+LevelCoder::LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec> attributes)
+    : limits_(limits),
+      wedge_coder_(limits.group_count),
+      loose_coder_(limits.group_count),
+      points_(limits.grid_bits),
+      attributes_(attributes),
+      flags_(std::array<std::uint32_t, 1>{kFlags}, 1),
+      corners_left_(kMostCornersEach * (limits.most_faces + limits.most_vertices)) {}
 
-bool LevelCoder::code_sheets(BitCoder& coder, BaseMesh& base) {
-  bool any = false;
-  for (Index i = 0; i < base.same_as.size(); ++i) any = any || base.same_as[i] != i;
-  any = coder.code_raw(any ? 1 : 0, 1) != 0;
-  for (Index i = 0; i < base.same_as.size(); ++i) {
-    const std::array<std::uint32_t, 1> context = {kIsCopy};
-    const bool is_copy = any && base_bits_.code(coder, base.same_as[i] != i ? 1 : 0, context, 0) != 0;
-    base.same_as[i] = is_copy ? coder.code_raw(base.same_as[i], std::bit_width(i)) : i;
-    if (base.same_as[i] > i || base.same_as[base.same_as[i]] != base.same_as[i]) return false;
-  }
-  return true;
+bool LevelCoder::code_flag(BitCoder& coder, std::uint32_t which, bool is) {
+  return flags_.code(coder, is ? 1 : 0, std::array<std::uint32_t, 1>{which}, 0) != 0;
 }
 
 bool LevelCoder::code_base(BitCoder& coder, BaseMesh& base) {
-  if (!code_corners(coder, base) || !code_sheets(coder, base)) return false;
-  for (Index i = 0; i < base.positions.size(); ++i) {
-    const bool is_copy = base.same_as[i] != i;
-    if (is_copy) base.positions[i] = base.positions[base.same_as[i]];
-    if (!points_.code_base(coder, base.positions[i], is_copy)) return false;
-  }
+  if (!base_coder_.code(coder, base, limits_.most_wedges, wedges_)) return false;
+  for (Vec3i& position : base.positions)
+    if (!points_.code_base(coder, position)) return false;
   positions_ = base.positions;
-  rotate_faces(base.corners);
-  return mesh_.start(base.corners, positions_.size());
-}
-
-bool LevelCoder::code_places(BitCoder& coder, const PatchPlan* plan) {
-  if (!patch_coder_.code(coder, mesh_, positions_, ++round_number_, plan, patches_)) return false;
-  points_.start_round(mesh_, positions_);
-  add_vertices();
+  std::vector<Index> corners = base.corners, wedges;
+  for (std::size_t c = 0; c < corners.size(); ++c) wedges.push_back(wedges_.begin(corners[c]) + base.wedges[c]);
+  for (std::size_t c = 0; c < corners.size(); c += 3) rotate_face(&corners[c], &wedges[c]);
+  mesh_.start(std::move(corners), std::move(wedges), base.groups, positions_.size());
   return true;
 }
 
-void LevelCoder::note_vertex(bool closed) {
-  round_.stars.insert(round_.stars.end(), star_.begin(), star_.end());
-  round_.vertices.push_back(
-      {static_cast<Index>(round_.stars.size()), static_cast<Index>(round_.replaced.size()), closed});
+bool LevelCoder::code_base_attributes(BitCoder& coder, std::span<const std::vector<std::int32_t>> given) {
+  return attributes_.code_base(coder, mesh_, wedges_, positions_, given);
+}
+
+bool LevelCoder::code_patches(BitCoder& coder, const PatchPlan* plan) {
+  vertices_done_ = 0;
+  stars_.stars.clear();
+  stars_.faces.clear();
+  stars_.coarse.clear();
+  vertices_.stars.clear();
+  vertices_.star_end.clear();
+  vertices_.sector_end.clear();
+  sectors_.clear();
+  return patch_coder_.code(coder, mesh_, positions_, ++round_number_, plan, patches_);
+}
+
+bool LevelCoder::code_places(BitCoder& coder, std::span<const Index> joins) {
+  const auto count = static_cast<Index>(patches_.ears.size() + patches_.patches.size());
+  joined_.resize(count);
+  bool any = false;
+  for (Index i = 0; i < joins.size(); ++i) any = any || joins[i] != i;
+  any = count > 1 && code_flag(coder, kAnyJoins, any);
+  for (Index i = 0; i < count; ++i) {
+    joined_[i] = i;
+    if (!any || i == 0 || !code_flag(coder, kJoins, !joins.empty() && joins[i] != i)) continue;
+    joined_[i] = coder.code_raw(joins.empty() ? 0 : joins[i], std::bit_width(i - 1));
+    if (joined_[i] >= i || joined_[joined_[i]] != joined_[i]) return false;
+  }
+  points_.start_round(mesh_, positions_);
+  add_stars();
+  return true;
+}
+
+void LevelCoder::end_star(Index vertex, bool closed, bool is_loose) {
+  stars_.faces.insert(stars_.faces.end(), star_.begin(), star_.end());
+  stars_.stars.push_back(
+      {vertex, static_cast<Index>(stars_.faces.size()), static_cast<Index>(stars_.coarse.size()), closed, is_loose});
 }
 
 /// Ears come first: patches may move the faces that they hang on.
-void LevelCoder::add_vertices() {
-  round_.vertices.clear();
-  round_.stars.clear();
-  round_.replaced.clear();
-  round_.replaced_corners.clear();
+void LevelCoder::add_stars() {
+  auto next = static_cast<Index>(positions_.size());
+  std::vector<Index> first_star;
+  const auto vertex_of_next = [&] {
+    const auto i = static_cast<Index>(stars_.stars.size());
+    if (joined_[i] != i) return stars_.stars[joined_[i]].vertex;
+    first_star.push_back(i);
+    return next++;
+  };
   for (const Index half : patches_.ears) {
-    mesh_.add_ear(half, round_number_, star_);
-    note_vertex(false);
+    const Index vertex = vertex_of_next();
+    mesh_.add_ear(half, vertex, round_number_, star_);
+    end_star(vertex, false, false);
   }
   std::span<const Index> polygons = patches_.polygons, faces = patches_.faces;
   Index polygon_begin = 0, face_begin = 0;
@@ -84,26 +104,156 @@ void LevelCoder::add_vertices() {
     const auto polygon = polygons.subspan(polygon_begin, patch.polygon_end - polygon_begin);
     const auto replaced = faces.subspan(face_begin, patch.face_end - face_begin);
     for (const Index face : replaced) {
-      const Index* c = mesh_.corners().data() + 3 * std::size_t{face};
-      round_.replaced.push_back(face);
-      round_.replaced_corners.push_back({c[0], c[1], c[2]});
+      const Index c = 3 * face;
+      stars_.coarse.push_back({face, mesh_.group(face), {mesh_.wedge(c), mesh_.wedge(c + 1), mesh_.wedge(c + 2)}});
     }
-    mesh_.refine(polygon, replaced, patch.closed, round_number_, star_);
-    note_vertex(patch.closed);
+    const Index vertex = vertex_of_next();
+    mesh_.refine(polygon, replaced, patch.closed, vertex, round_number_, star_);
+    end_star(vertex, patch.closed, false);
     polygon_begin = patch.polygon_end;
     face_begin = patch.face_end;
   }
+  order_stars(first_star);
+}
+
+/// Puts together the stars of each vertex.
+void LevelCoder::order_stars(std::span<const Index> first_star) {
+  vertices_.stars.resize(stars_.stars.size());
+  for (Index i = 0; i < vertices_.stars.size(); ++i) vertices_.stars[i] = i;
+  if (first_star.size() < vertices_.stars.size())
+    std::stable_sort(vertices_.stars.begin(), vertices_.stars.end(),
+                     [&](Index a, Index b) { return stars_.stars[a].vertex < stars_.stars[b].vertex; });
+  for (Index i = 0; i < vertices_.stars.size(); ++i) {
+    const bool is_last = i + 1 == vertices_.stars.size() ||
+                         stars_.stars[vertices_.stars[i]].vertex != stars_.stars[vertices_.stars[i + 1]].vertex;
+    if (is_last) vertices_.star_end.push_back(i + 1);
+  }
+}
+
+/// Adds the sectors of a star.
+bool LevelCoder::split(std::size_t i) {
+  const std::span<const Index> faces = stars_.star(i);
+  split_.closed = stars_.stars[i].closed;
+  split_.faces.clear();
+  split_.coarse.clear();
+  for (const Index face : faces)
+    split_.faces.push_back(
+        {face, mesh_.group(face), mesh_.wedge(3 * face), mesh_.wedge(3 * face + 1), mesh_.wedge(3 * face + 2)});
+  const auto place_of = [&](Index wedge) {
+    const Index vertex = wedges_.vertex(wedge);
+    for (Index k = 0; k < faces.size(); ++k)
+      if (mesh_.from(3 * faces[k] + 1) == vertex) return k;
+    return static_cast<Index>(faces.size());  // the end of an open star
+  };
+  for (const NewStars::Coarse& coarse : stars_.coarse_of(i))
+    split_.coarse.push_back({coarse.face,
+                             coarse.group,
+                             {place_of(coarse.wedges[0]), place_of(coarse.wedges[1]), place_of(coarse.wedges[2])},
+                             coarse.wedges});
+  return split_star(split_, sectors_);
+}
+
+/// Ends a vertex whose sectors are there.
+bool LevelCoder::end_vertex() {
+  const Index begin = vertices_.sector_end.empty() ? 0 : vertices_.sector_end.back();
+  const std::size_t first = begin == 0 ? 0 : sectors_.sectors[begin - 1].polygon_end;
+  const std::size_t corners = sectors_.polygons.size() - first;
+  vertices_.sector_end.push_back(static_cast<Index>(sectors_.sectors.size()));
+  if (corners > corners_left_ || wedges_.size() > limits_.most_wedges) return false;
+  corners_left_ -= corners;
+  return true;
+}
+
+bool LevelCoder::code_extra(BitCoder& coder, Index count) {
+  return wedge_coder_.code_extra(coder, count, static_cast<Index>(limits_.most_wedges - wedges_.size()), wedges_);
+}
+
+bool LevelCoder::code_wedges(BitCoder& coder, const WedgePlan* plan) {
+  if (mesh_.face_count() > limits_.most_faces) return false;
+  if (positions_.size() + vertices_.count() > limits_.most_vertices) return false;
+  bool any_extra =
+      plan != nullptr && std::any_of(plan->extra.begin(), plan->extra.end(), [](Index n) { return n > 0; });
+  any_extra = code_flag(coder, kAnyExtra, any_extra);
+  for (std::size_t v = 0; v < vertices_.count(); ++v) {
+    wedges_.add_vertex();
+    for (const Index i : vertices_.stars_of(v)) {
+      const Star::Spoke* wanted = plan != nullptr ? plan->faces.data() + stars_.face_begin(i) : nullptr;
+      const bool is_ear = i < patches_.ears.size();
+      if (!wedge_coder_.code(coder, mesh_, stars_.star(i), stars_.stars[i].closed, is_ear, wanted, wedges_))
+        return false;
+      if (!split(i)) return false;
+    }
+    if (wedges_.size() > limits_.most_wedges) return false;
+    if (any_extra && !code_extra(coder, plan != nullptr ? plan->extra[v] : 0)) return false;
+    if (!end_vertex()) return false;
+  }
+  return true;
 }
 
 bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
-  const std::size_t first = positions_.size(), count = round_.vertices.size();
+  const std::size_t first = positions_.size(), count = vertices_.count();
   positions_.resize(first + count);
-  for (std::size_t i = 0; i < count; ++i)
-    positions_[first + i] = PointCoder::guess(mesh_, round_.star(i), round_.vertices[i].closed, positions_);
+  const auto star_of = [&](std::size_t i) { return vertices_.stars_of(i).front(); };
   for (std::size_t i = 0; i < count; ++i) {
+    const Index star = star_of(i);
+    positions_[first + i] = PointCoder::guess(mesh_, stars_.star(star), stars_.stars[star].closed, positions_);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index star = star_of(i);
     Vec3i position = given.empty() ? Vec3i{} : given[i];
-    if (!points_.code(coder, mesh_, round_.star(i), round_.vertices[i].closed, positions_, position)) return false;
+    if (!points_.code(coder, mesh_, stars_.star(star), stars_.stars[star].closed, positions_, position)) return false;
     positions_[first + i] = position;
+  }
+  return true;
+}
+
+/// The middle of what a loose vertex's faces stand on; without any, where the vertex before it lies.
+Vec3i LevelCoder::guess_loose() const {
+  Vec3i sum;
+  std::int64_t count = 0;
+  for (const Index face : star_)
+    for (Index c = 3 * face + 1; c < 3 * face + 3; ++c, ++count) sum = sum + positions_[mesh_.from(c)];
+  if (count > 0) return divide(sum, count);
+  return positions_.empty() ? Vec3i{} : positions_.back();
+}
+
+bool LevelCoder::code_loose_vertex(BitCoder& coder, LooseVertex& vertex) {
+  wedges_.add_vertex();
+  mesh_.add_vertex();
+  const std::size_t first_fine = sectors_.fine.size();
+  if (!loose_coder_.code(coder, vertex.record, round_number_, corners_left_, mesh_, wedges_, sectors_)) return false;
+  if (mesh_.face_count() > limits_.most_faces || wedges_.size() > limits_.most_wedges) return false;
+  if (!code_extra(coder, vertex.extra) || !end_vertex()) return false;
+  star_.assign(sectors_.fine.begin() + static_cast<std::ptrdiff_t>(first_fine), sectors_.fine.end());
+  if (!points_.code_loose(coder, guess_loose(), vertex.position)) return false;
+  end_star(static_cast<Index>(positions_.size()), false, true);
+  positions_.push_back(vertex.position);
+  vertices_.stars.push_back(static_cast<Index>(stars_.stars.size() - 1));
+  vertices_.star_end.push_back(static_cast<Index>(vertices_.stars.size()));
+  return true;
+}
+
+bool LevelCoder::code_loose_count(BitCoder& coder, Index& count) {
+  count = loose_coder_.code_count(coder, count);
+  return positions_.size() + count <= limits_.most_vertices && count + vertices_.count() > 0;
+}
+
+bool LevelCoder::code_attributes(BitCoder& coder, std::span<const std::vector<std::int32_t>> given) {
+  if (attributes_.count() == 0) return true;
+  const std::size_t first = positions_.size() - vertices_.count();
+  const Index first_wedge = vertices_done_ < vertices_.count()
+                                ? wedges_.begin(static_cast<Index>(first + vertices_done_))
+                                : static_cast<Index>(wedges_.size());
+  attributes_.resize(wedges_.size());
+  for (; vertices_done_ < vertices_.count(); ++vertices_done_) {
+    vertex_faces_.clear();
+    for (const Index star : vertices_.stars_of(vertices_done_)) {
+      const std::span<const Index> faces = stars_.star(star);
+      vertex_faces_.insert(vertex_faces_.end(), faces.begin(), faces.end());
+    }
+    if (!attributes_.code_vertex(coder, mesh_, wedges_, positions_, static_cast<Index>(first + vertices_done_),
+                                 vertex_faces_, given, first_wedge))
+      return false;
   }
   return true;
 }

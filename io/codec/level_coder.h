@@ -5,73 +5,150 @@
 #include <span>
 #include <vector>
 
+#include "codec/attribute_coder.h"
+#include "codec/base_coder.h"
 #include "codec/bit_coder.h"
 #include "codec/bit_mixer.h"
+#include "codec/loose_coder.h"
 #include "codec/patch_coder.h"
 #include "codec/patch_mesh.h"
 #include "codec/point_coder.h"
+#include "codec/star.h"
+#include "codec/wedge_coder.h"
+#include "codec/wedge_table.h"
 
 namespace lodestone::detail {
 
-/// A base mesh by its points: where the mesh has several sheets, points of one vertex may be several.
-struct BaseMesh {
-  std::vector<Index> corners;    ///< three points for each face; given in the order of first use, left canonical
-  std::vector<Vec3i> positions;  ///< by point
-  std::vector<Index> same_as;    ///< by point: an earlier point of its vertex, or itself
+/// What all levels have in common, and what the finest of them may have.
+struct LevelLimits {
+  int grid_bits = 14;
+  Index group_count = 1;
+  std::uint64_t most_vertices = kNoIndex;
+  std::uint64_t most_wedges = kNoIndex;
+  std::uint64_t most_faces = kNoIndex;
 };
 
-/// Vertices of a round, in the order in which they are coded.
-struct NewVertices {
-  struct Vertex {
-    Index star_end = 0;      ///< in `stars`; it begins where the one before ends
-    Index replaced_end = 0;  ///< in `replaced`
+/// Stars of a round, in the order in which their places are coded: ears, then patches, then loose ones.
+struct NewStars {
+  struct Star {
+    Index vertex = 0;
+    Index face_end = 0;    ///< in `faces`; it begins where the one before ends
+    Index coarse_end = 0;  ///< in `coarse`
     bool closed = true;
+    bool is_loose = false;  ///< its faces need not lie side by side
   };
-  std::vector<Vertex> vertices;
-  std::vector<Index> stars;     ///< faces; the new vertex stands first in each, its ring in order in the others
-  std::vector<Index> replaced;  ///< faces that the first of its star took the places of …
-  std::vector<std::array<Index, 3>> replaced_corners;  ///< … and what corners they had
+  /// A face that is replaced, as it was.
+  struct Coarse {
+    Index face = 0;
+    Index group = 0;
+    std::array<Index, 3> wedges{};  ///< of its corners
+  };
+  std::vector<Star> stars;
+  std::vector<Index> faces;  ///< the new vertex stands first in each, its ring in order in the others
+  std::vector<Coarse> coarse;
 
+  Index face_begin(std::size_t i) const { return i == 0 ? 0 : stars[i - 1].face_end; }
   std::span<const Index> star(std::size_t i) const {
-    const Index begin = i == 0 ? 0 : vertices[i - 1].star_end;
-    return std::span(stars).subspan(begin, vertices[i].star_end - begin);
+    return std::span(faces).subspan(face_begin(i), stars[i].face_end - face_begin(i));
+  }
+  std::span<const Coarse> coarse_of(std::size_t i) const {
+    const Index begin = i == 0 ? 0 : stars[i - 1].coarse_end;
+    return std::span(coarse).subspan(begin, stars[i].coarse_end - begin);
   }
 };
 
-/// The level that the rounds so far lead to, and the models that code the next: the same for writer and reader.
+/// The vertices of a round: each has a star, or several where sheets meet in it, and the sectors of a record.
+struct NewVertices {
+  std::vector<Index> stars;       ///< by vertex, in order: numbers of stars
+  std::vector<Index> star_end;    ///< by vertex: in `stars`
+  std::vector<Index> sector_end;  ///< by vertex: in the round's sectors
+
+  std::size_t count() const { return star_end.size(); }
+  std::span<const Index> stars_of(std::size_t i) const {
+    const Index begin = i == 0 ? 0 : star_end[i - 1];
+    return std::span(stars).subspan(begin, star_end[i] - begin);
+  }
+};
+
+/// What a writer wants of the wedges of a round's patches and ears.
+struct WedgePlan {
+  std::vector<Star::Spoke> faces;  ///< as NewStars::faces; centres are numbered within their vertex
+  std::vector<Index> extra;        ///< by vertex: its wedges that no face uses yet
+};
+
+/// What a writer wants of a loose vertex.
+struct LooseVertex {
+  LooseRecord record;
+  Index extra = 0;  ///< its wedges that no face uses yet
+  Vec3i position;
+};
+
+/// The level that the rounds so far lead to, and the models that code the next: the same for writer and reader. A round
+/// is coded by the functions from `code_patches` on, in their order.
 class LevelCoder {
  public:
-  explicit LevelCoder(int grid_bits) : points_(grid_bits) {}
+  LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec> attributes);
 
   const PatchMesh& mesh() const { return mesh_; }
+  const WedgeTable& wedges() const { return wedges_; }
   std::span<const Vec3i> positions() const { return positions_; }
-  /// The vertices of the last round.
-  const NewVertices& round() const { return round_; }
-  /// The patches of the last round: first its ears are vertices, then its patches.
+  /// Of the last round.
   const RoundPatches& patches() const { return patches_; }
+  const NewStars& stars() const { return stars_; }
+  const NewVertices& vertices() const { return vertices_; }
+  const SectorList& sectors() const { return sectors_; }
+  const AttributeCoder& attributes() const { return attributes_; }
 
   /// Codes the base mesh; a reader gives one with arrays of the right lengths. False where what is read is none.
   bool code_base(BitCoder& coder, BaseMesh& base);
-  /// Codes where a round's vertices go, and puts them there. False where what is read is no round.
-  bool code_places(BitCoder& coder, const PatchPlan* plan);
-  /// Codes the positions of the round's vertices; a writer gives them. False where what is read lies off the grid.
+  /// Codes the attributes of the base mesh. `given`: by attribute, the numbers of all wedges, of a writer.
+  bool code_base_attributes(BitCoder& coder, std::span<const std::vector<std::int32_t>> given);
+
+  /// Codes where a round's patches and ears are.
+  bool code_patches(BitCoder& coder, const PatchPlan* plan);
+  /// Codes which of them belong to one vertex, and puts their stars there. `joins`: by star, the first of its vertex.
+  bool code_places(BitCoder& coder, std::span<const Index> joins);
+  bool code_wedges(BitCoder& coder, const WedgePlan* plan);
+  /// Codes the positions of these vertices; a writer gives them. False where what is read lies off the grid.
   bool code_points(BitCoder& coder, std::span<const Vec3i> given);
+  /// Codes how many loose vertices the round has besides, and after that each of them. False where a round has none at
+  /// all, or more than there may be.
+  bool code_loose_count(BitCoder& coder, Index& count);
+  bool code_loose_vertex(BitCoder& coder, LooseVertex& vertex);
+  /// Codes the attributes of the round's wedges that have none yet. `given`: by attribute, their numbers, of a writer.
+  bool code_attributes(BitCoder& coder, std::span<const std::vector<std::int32_t>> given);
 
  private:
-  bool code_corners(BitCoder& coder, BaseMesh& base);
-  bool code_sheets(BitCoder& coder, BaseMesh& base);
-  void add_vertices();
-  void note_vertex(bool closed);
+  void add_stars();
+  void end_star(Index vertex, bool closed, bool is_loose);
+  void order_stars(std::span<const Index> first_star);
+  bool split(std::size_t star);
+  bool end_vertex();
+  bool code_extra(BitCoder& coder, Index count);
+  bool code_flag(BitCoder& coder, std::uint32_t which, bool is);
+  Vec3i guess_loose() const;
 
+  LevelLimits limits_;
   PatchMesh mesh_;
+  WedgeTable wedges_;
   std::vector<Vec3i> positions_;
-  BitMixer base_bits_{std::array<std::uint32_t, 1>{2}, 1};
+  BaseCoder base_coder_;
   PatchCoder patch_coder_;
+  WedgeCoder wedge_coder_;
+  LooseCoder loose_coder_;
   PointCoder points_;
+  AttributeCoder attributes_;
+  BitMixer flags_;
   std::uint32_t round_number_ = 0;
+  std::uint64_t corners_left_;  // that polygons of sectors may still have
+
   RoundPatches patches_;
-  NewVertices round_;
-  std::vector<Index> star_;
+  NewStars stars_;
+  NewVertices vertices_;
+  SectorList sectors_;
+  std::size_t vertices_done_ = 0;  // those of the round that have attributes
+  std::vector<Index> star_, joined_, vertex_faces_;
+  Star split_;
 };
 
 }  // namespace lodestone::detail

@@ -27,14 +27,23 @@ constexpr std::uint32_t kShapes = 12;
 constexpr std::uint32_t kDegrees = 20;
 constexpr std::uint32_t kEnds = 24;
 constexpr std::uint32_t kFlats = 8;
+constexpr std::uint32_t kFaceSeams = 3;  // of a face's edges
+constexpr std::uint32_t kSeams = 6;      // whether an edge is one, how many the patch has crossed
 
 constexpr std::array<std::uint32_t, 8> kFaceContexts = {
-    kStates * kAges * 4,        kStates* kSizes,        kShapes* kShapes * 3, kDegrees* kStates, kAges* kDegrees * 4,
-    kFlats* kFlats* kSizes / 3, 4 * 5 * kRatios* kAges, 4 * kStates* kSizes};
-constexpr std::array<std::uint32_t, 10> kEdgeContexts = {
-    kCorners * kPairs * kAges,  kCorners* kRatios* kPairs, kRatios* kRatios,          kCorners* kEnds * 3,
-    kCorners* kSizes,           kRatios* kAges* kAges * 4, kRatios* kFlats* kCorners, kCorners* kRatios* kRatios,
-    kCorners* kDegrees * 3 * 3, kRatios* kRatios* kPairs};
+    kFaceSeams * kStates * kAges * 4, kStates* kSizes,     kShapes* kShapes * 3,
+    kFaceSeams* kDegrees* kStates,    kAges* kDegrees * 4, kFlats* kFlats* kSizes / 3,
+    4 * 5 * kRatios* kAges,           4 * kStates* kSizes};
+constexpr std::array<std::uint32_t, 10> kEdgeContexts = {kSeams * kCorners * kPairs * kAges,
+                                                         kCorners* kRatios* kPairs,
+                                                         kRatios* kRatios,
+                                                         kCorners* kEnds * 3,
+                                                         kSeams* kCorners* kSizes,
+                                                         kRatios* kAges* kAges * 4,
+                                                         kRatios* kFlats* kCorners,
+                                                         kCorners* kRatios* kRatios,
+                                                         kCorners* kDegrees * 3 * 3,
+                                                         kSeams* kRatios* kRatios* kPairs};
 
 enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 
@@ -47,8 +56,8 @@ std::uint32_t number_states(std::uint32_t plain, std::uint32_t patched) {
 }  // namespace
 
 PatchCoder::PatchCoder()
-    : faces_(kFaceContexts, kStates),
-      edges_(kEdgeContexts, kCorners * 3),
+    : faces_(kFaceContexts, kFaceSeams * kStates),
+      edges_(kEdgeContexts, kSeams * kCorners * 3),
       borders_(std::array<std::uint32_t, 1>{kBorders}, 1) {}
 
 void PatchCoder::start(const PatchMesh& mesh, std::span<const Vec3i> positions, std::uint32_t round) {
@@ -107,7 +116,7 @@ std::uint32_t PatchCoder::flatness(Index half) const {
 }
 
 bool PatchCoder::code_face(BitCoder& coder, Index face, bool begins) {
-  std::uint32_t plain = 0, patched = 0, ages = 0, flat = 0, flattest = 0, touched = 0;
+  std::uint32_t plain = 0, patched = 0, ages = 0, flat = 0, flattest = 0, touched = 0, seams = 0;
   int degrees = 0, new_degrees = 0, tight = 4, longest = 0, lengths = 0, areas = 0, neighbours = 0;
   for (Index h = 3 * face; h < 3 * face + 3; ++h) {
     const Around& vertex = around_[mesh_->from(h)];
@@ -123,6 +132,7 @@ bool PatchCoder::code_face(BitCoder& coder, Index face, bool begins) {
     if (mesh_->twin(h) == kNoIndex) continue;
     const Index beyond = face_of_corner(mesh_->twin(h));
     ages += age(beyond);
+    seams += mesh_->is_seam(h) ? 1 : 0;
     areas += face_logs_[beyond];
     ++neighbours;
     const std::uint32_t flat_here = flatness(h);
@@ -134,19 +144,20 @@ bool PatchCoder::code_face(BitCoder& coder, Index face, bool begins) {
   const std::uint32_t relative = neighbours == 0 ? 0 : bucket(face_logs_[face] - areas / neighbours, -48, 8, kShapes);
   const std::uint32_t shape = bucket(longest - lengths / 3, 0, 4, kShapes);
   const std::uint32_t degree = bucket(degrees, 9, 1, kDegrees);
+  seams = std::min(seams, kFaceSeams - 1);
   const std::uint32_t contexts[] = {
-      (state * kAges + own_age) * 4 + others_age,
+      ((seams * kStates + state) * kAges + own_age) * 4 + others_age,
       state * kSizes + size,
       (relative * kShapes + shape) * 3 + (patched != 0 ? 2
                                           : plain != 0 ? 1
                                                        : 0),
-      degree * kStates + state,
+      (seams * kDegrees + degree) * kStates + state,
       (own_age * kDegrees + degree) * 4 + others_age,
       (std::min(flat / 3, kFlats - 1) * kFlats + flattest) * (kSizes / 3) + size / 3,
       ((touched * 5 + static_cast<std::uint32_t>(tight)) * kRatios + bucket(new_degrees, 10, 1, kRatios)) * kAges +
           own_age,
       (touched * kStates + state) * kSizes + size};
-  return faces_.code(coder, begins ? 1 : 0, contexts, state) != 0;
+  return faces_.code(coder, begins ? 1 : 0, contexts, seams * kStates + state) != 0;
 }
 
 bool PatchCoder::code_edge(BitCoder& coder, Index half, bool goes_on) {
@@ -163,6 +174,7 @@ bool PatchCoder::code_edge(BitCoder& coder, Index half, bool goes_on) {
   const Index apex = mesh_->apex(twin);
   const auto corners = static_cast<std::uint32_t>(std::min<std::size_t>(polygon_.size() - 3, kCorners - 1));
   const std::uint32_t pair = plain * 3 + patched;
+  const std::uint32_t seam = std::min(crossed_, 2U) * 2 + (mesh_->is_seam(half) ? 1 : 0);
   const std::uint32_t relative = bucket(length - lengths / static_cast<int>(polygon_.size() + 1), -32, 5, kRatios);
   const int across = log2_16(squared(positions_[mesh_->apex(half)] - positions_[apex]));
   const std::uint32_t flip = bucket(across - length, -40, 5, kRatios);
@@ -180,17 +192,17 @@ bool PatchCoder::code_edge(BitCoder& coder, Index half, bool goes_on) {
   const std::uint32_t same = mesh_->made_in(face) == mesh_->made_in(beyond) ? 1 : 0;
   const auto at_most_two = [](std::int32_t x) { return static_cast<std::uint32_t>(std::min(x, 2)); };
   const std::uint32_t contexts[] = {
-      (corners * kPairs + pair) * kAges + age(beyond),
+      ((seam * kCorners + corners) * kPairs + pair) * kAges + age(beyond),
       (corners * kRatios + relative) * kPairs + pair,
       relative * kRatios + flip,
       (corners * kEnds + ends) * 3 + bucket(degree(apex), 3, 2, 3),
-      corners * kSizes + size_of(beyond),
+      (seam * kCorners + corners) * kSizes + size_of(beyond),
       ((relative * kAges + age(face)) * kAges + age(beyond)) * 4 + same * 2 + (face == patch_faces_.front() ? 1 : 0),
       (flip * kFlats + flatness(half)) * kCorners + corners,
       (corners * kRatios + angle) * kRatios + far,
       ((corners * kDegrees + balance) * 3 + at_most_two(c.patches)) * 3 + at_most_two(a.patches + b.patches),
-      (angle * kRatios + relative) * kPairs + pair};
-  return edges_.code(coder, goes_on ? 1 : 0, contexts, corners * 3 + patched) != 0;
+      ((seam * kRatios + angle) * kRatios + relative) * kPairs + pair};
+  return edges_.code(coder, goes_on ? 1 : 0, contexts, (seam * kCorners + corners) * 3 + patched) != 0;
 }
 
 bool PatchCoder::code_border(BitCoder& coder, std::uint32_t what, bool yes) {
@@ -227,6 +239,7 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
   patch_faces_.assign(1, seed);
   decide(seed, kPatch);
   measure_polygon();
+  crossed_ = 0;
   std::size_t closing = kNoIndex;
   for (std::size_t i = 0; i < polygon_.size();) {
     const Index half = polygon_[i], twin = mesh_->twin(half);
@@ -248,6 +261,7 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
       continue;
     }
     decide(beyond, kPatch);
+    crossed_ += mesh_->is_seam(half) ? 1 : 0;
     patch_faces_.push_back(beyond);
     polygon_[i] = next_corner(twin);
     polygon_.insert(polygon_.begin() + static_cast<std::ptrdiff_t>(i) + 1, previous_corner(twin));
@@ -319,8 +333,7 @@ bool PatchCoder::code(BitCoder& coder, const PatchMesh& mesh, std::span<const Ve
   if (count < 0 || count > face_count) return false;
   walk(coder, plan, static_cast<Index>(count), patches);
   code_ears(coder, plan, patches);
-  return static_cast<std::int64_t>(patches.patches.size()) == count &&
-         !(patches.patches.empty() && patches.ears.empty());
+  return static_cast<std::int64_t>(patches.patches.size()) == count;
 }
 
 }  // namespace lodestone::detail

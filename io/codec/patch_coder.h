@@ -15,7 +15,7 @@
 namespace lodestone::detail {
 
 /// Corners that a patch's polygon has at most.
-inline constexpr std::size_t kMostPatchCorners = 250;
+inline constexpr std::size_t kMostPatchCorners = 256;
 
 /// Where vertices appear in a round: patches of faces, each to become the star of one, and ears.
 struct RoundPatches {
@@ -96,7 +96,8 @@ class PatchCoder {
   // Of the patch at hand.
   std::vector<Index> polygon_;
   std::vector<Index> patch_faces_;
-  Vec3i centre_;  // sixteenths
+  std::uint32_t crossed_ = 0;  // seams
+  Vec3i centre_;               // sixteenths
   std::int64_t radius_ = 1;
 };
 

@@ -3,43 +3,115 @@
 #include <lodestone/core/detail/edges.h>
 
 namespace lodestone::detail {
+namespace {
 
-bool PatchMesh::start(std::vector<Index> corners, std::size_t vertex_count) {
+constexpr std::size_t kMostHalves = 16;  // of an edge; of more, none are twins
+
+}  // namespace
+
+bool PatchMesh::is_seam(Index half) const {
+  const Index other = twin(half);
+  return other != kNoIndex && !fit(half, other);
+}
+
+/// Whether two half-edges in opposite directions have the same wedges and group.
+bool PatchMesh::fit(Index half, Index other) const {
+  return wedges_[half] == wedges_[next_corner(other)] && wedges_[next_corner(half)] == wedges_[other] &&
+         groups_[face_of_corner(half)] == groups_[face_of_corner(other)];
+}
+
+void PatchMesh::start(std::vector<Index> corners, std::vector<Index> wedges, std::vector<Index> groups,
+                      std::size_t vertex_count) {
   corners_ = std::move(corners);
+  wedges_ = std::move(wedges);
+  groups_ = std::move(groups);
   twins_.assign(corners_.size(), kNoIndex);
   degree_.assign(vertex_count, 0);
   made_in_.assign(face_count(), 0);
   for (const Index vertex : corners_) ++degree_[vertex];
-  bool is_surface = true;
-  const std::vector<HalfEdge> halves = sorted_edges(corners_);
-  for_each_edge(halves, [&](Edge edge) {
-    const bool disagree = edge.size() == 2 && edge[0].forward == edge[1].forward;
-    if (edge[0].is_loop() || edge.size() > 2 || disagree) is_surface = false;
-    if (!is_surface || edge.size() == 1) return;
-    twins_[edge[0].corner] = edge[1].corner;
-    twins_[edge[1].corner] = edge[0].corner;
-  });
-  return is_surface;
+  std::vector<Index> halves(corners_.size());
+  for (Index h = 0; h < halves.size(); ++h) halves[h] = h;
+  join(halves);
 }
 
-void PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, std::uint32_t round,
-                       std::vector<Index>& star) {
+void PatchMesh::join(std::span<const Index> halves) {
+  std::vector<HalfEdge> edges;
+  edges.reserve(halves.size());
+  for (const Index h : halves) edges.emplace_back(from(h), to(h), h);
+  sort_edges(edges);
+  const auto pair_up = [&](const HalfEdge& a, const HalfEdge& b) {
+    twins_[a.corner] = b.corner;
+    twins_[b.corner] = a.corner;
+  };
+  const auto are_apart = [](const HalfEdge& a, const HalfEdge& b) {
+    return face_of_corner(a.corner) != face_of_corner(b.corner);
+  };
+  for_each_edge(edges, [&](Edge edge) {
+    if (edge.size() < 2 || edge.size() > kMostHalves || edge[0].is_loop()) return;
+    const HalfEdge* rest[2] = {nullptr, nullptr};  // by direction
+    int rest_count[2] = {0, 0};
+    for (const HalfEdge& a : edge)
+      for (const HalfEdge& b : edge)
+        if (a.forward && !b.forward && twin(a.corner) == kNoIndex && twin(b.corner) == kNoIndex && are_apart(a, b) &&
+            fit(a.corner, b.corner))
+          pair_up(a, b);
+    for (const HalfEdge& a : edge) {
+      if (twin(a.corner) != kNoIndex) continue;
+      rest[a.forward ? 1 : 0] = &a;
+      ++rest_count[a.forward ? 1 : 0];
+    }
+    if (rest_count[0] == 1 && rest_count[1] == 1 && are_apart(*rest[0], *rest[1])) pair_up(*rest[0], *rest[1]);
+  });
+}
+
+Index PatchMesh::part(Index half) {
+  const Index other = twins_[half];
+  if (other != kNoIndex) twins_[other] = kNoIndex;
+  twins_[half] = kNoIndex;
+  return other;
+}
+
+void PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, Index vertex,
+                       std::uint32_t round, std::vector<Index>& star) {
   outer_.clear();
-  for (const Index half : polygon) outer_.push_back({from(half), to(half), twin(half)});
+  for (const Index half : polygon)
+    outer_.push_back(
+        {from(half), to(half), twin(half), wedge(half), wedge(next_corner(half)), group(face_of_corner(half))});
   for (const Index face : faces)
     for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[corners_[h]];
-  place_star(closed, faces, round, star);
+  place_star(closed, faces, vertex, round, star);
 }
 
-void PatchMesh::add_ear(Index half, std::uint32_t round, std::vector<Index>& star) {
-  outer_.assign(1, {to(half), from(half), half});
-  place_star(false, {}, round, star);
+void PatchMesh::add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& star) {
+  outer_.assign(1, {to(half), from(half), half, wedge(next_corner(half)), wedge(half), group(face_of_corner(half))});
+  place_star(false, {}, vertex, round, star);
 }
 
-void PatchMesh::place_star(bool closed, std::span<const Index> faces, std::uint32_t round, std::vector<Index>& star) {
-  const auto vertex = static_cast<Index>(degree_.size());
+void PatchMesh::write_face(Index face, const std::array<Index, 3>& vertices, const std::array<Index, 3>& wedges,
+                           Index group, std::uint32_t round) {
+  if (face == face_count()) {
+    corners_.resize(corners_.size() + 3);
+    wedges_.resize(wedges_.size() + 3);
+    twins_.resize(twins_.size() + 3);
+    groups_.push_back(0);
+    made_in_.push_back(0);
+  } else {
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[corners_[h]];
+  }
+  for (Index i = 0; i < 3; ++i) {
+    corners_[3 * face + i] = vertices[i];
+    wedges_[3 * face + i] = wedges[i];
+    twins_[3 * face + i] = kNoIndex;
+    ++degree_[vertices[i]];
+  }
+  groups_[face] = group;
+  made_in_[face] = round;
+}
+
+void PatchMesh::place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
+                           std::vector<Index>& star) {
   const std::size_t count = outer_.size();
-  degree_.push_back(0);
+  if (vertex == degree_.size()) add_vertex();
   star.clear();
   for (std::size_t i = 0; i < count; ++i) {
     if (i < faces.size())
@@ -47,7 +119,9 @@ void PatchMesh::place_star(bool closed, std::span<const Index> faces, std::uint3
     else {
       star.push_back(static_cast<Index>(face_count()));
       corners_.resize(corners_.size() + 3);
+      wedges_.resize(wedges_.size() + 3);
       twins_.resize(twins_.size() + 3);
+      groups_.push_back(0);
       made_in_.push_back(0);
     }
   }
@@ -57,6 +131,10 @@ void PatchMesh::place_star(bool closed, std::span<const Index> faces, std::uint3
     corners_[first] = vertex;
     corners_[first + 1] = outer.from;
     corners_[first + 2] = outer.to;
+    wedges_[first] = kNoIndex;
+    wedges_[first + 1] = outer.from_wedge;
+    wedges_[first + 2] = outer.to_wedge;
+    groups_[star[i]] = outer.group;
     twins_[first] = i > 0 ? 3 * star[i - 1] + 2 : closed ? 3 * star[count - 1] + 2 : kNoIndex;
     twins_[first + 1] = outer.twin;
     twins_[first + 2] = i + 1 < count ? 3 * star[i + 1] : closed ? 3 * star[0] : kNoIndex;

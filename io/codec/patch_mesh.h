@@ -9,8 +9,8 @@
 
 namespace lodestone::detail {
 
-/// The faces of a level while rounds are coded, and what lies across their edges. Half-edge 3f + i runs from corner i
-/// of face f to the next corner.
+/// The faces of a level while rounds are coded, and what lies across their edges: neighbours by vertices, so that seams
+/// and the borders of groups do not cut the mesh. Half-edge 3f + i runs from corner i of face f to the next corner.
 class PatchMesh {
  public:
   std::size_t face_count() const { return corners_.size() / 3; }
@@ -25,26 +25,50 @@ class PatchMesh {
   /// In which round a face was made last.
   std::uint32_t made_in(Index face) const { return made_in_[face]; }
   const std::vector<Index>& corners() const { return corners_; }
+  Index wedge(Index corner) const { return wedges_[corner]; }
+  Index group(Index face) const { return groups_[face]; }
+  /// Whether wedges or groups differ on the sides of an edge; not at borders.
+  bool is_seam(Index half) const;
 
-  /// Starts with base faces: two half-edges with the same ends in opposite directions are twins. False where a face has
-  /// a vertex twice, or an edge more than two faces, or two that disagree on its direction.
-  bool start(std::vector<Index> corners, std::size_t vertex_count);
+  /// Starts with base faces. Of the half-edges between two vertices those are twins that run in opposite directions
+  /// between the same wedges in the same group, and then what is left, where that is one of each direction.
+  void start(std::vector<Index> corners, std::vector<Index> wedges, std::vector<Index> groups,
+             std::size_t vertex_count);
 
-  /// Replaces a patch by the star of a new vertex: `polygon` is its outer half-edges in order; those of an open patch
-  /// begin behind the closing edge, which is not among them. `faces`: its faces, as many as the star needs are
-  /// appended. The star's faces go to `star`.
-  void refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, std::uint32_t round,
-              std::vector<Index>& star);
-  /// Puts a face with a new vertex onto a border half-edge.
-  void add_ear(Index half, std::uint32_t round, std::vector<Index>& star);
+  /// Replaces a patch by a star of a vertex, which is the next one or one that is there: `polygon` is its outer
+  /// half-edges in order; those of an open patch begin behind the closing edge, which is not among them. `faces`: its
+  /// faces, as many as the star needs are appended. The star's faces go to `star`, the vertex first in each; they have
+  /// the wedges and groups of the faces that had their outer edges, and no wedge at the vertex.
+  void refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, Index vertex,
+              std::uint32_t round, std::vector<Index>& star);
+  /// Puts a face with a vertex onto a border half-edge, with the wedges and the group of the face there.
+  void add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& star);
+
+  void set_wedge(Index corner, Index wedge) { wedges_[corner] = wedge; }
+  void set_group(Index face, Index group) { groups_[face] = group; }
+
+  /// A vertex without faces.
+  void add_vertex() { degree_.push_back(0); }
+  /// Writes faces that need not fit to what is there; `face_count()` appends one. Their edges are borders until
+  /// `join` has been called.
+  void write_face(Index face, const std::array<Index, 3>& vertices, const std::array<Index, 3>& wedges, Index group,
+                  std::uint32_t round);
+  /// Makes an edge a border on both sides; returns what was its twin.
+  Index part(Index half);
+  /// Finds twins among border half-edges, as `start` does.
+  void join(std::span<const Index> halves);
 
  private:
   struct Outer {
-    Index from, to, twin;
+    Index from, to, twin, from_wedge, to_wedge, group;
   };
-  void place_star(bool closed, std::span<const Index> faces, std::uint32_t round, std::vector<Index>& star);
+  void place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
+                  std::vector<Index>& star);
+  bool fit(Index half, Index other) const;
 
   std::vector<Index> corners_;
+  std::vector<Index> wedges_;  // by corner
+  std::vector<Index> groups_;  // by face
   std::vector<Index> twins_;
   std::vector<Index> degree_;
   std::vector<std::uint32_t> made_in_;

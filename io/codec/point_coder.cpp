@@ -82,15 +82,25 @@ bool PointCoder::is_on_grid(const Vec3i& position) const {
   return std::min({position.x, position.y, position.z}) >= 0 && std::max({position.x, position.y, position.z}) < end;
 }
 
-bool PointCoder::code_base(BitCoder& coder, Vec3i& position, bool is_known) {
+bool PointCoder::code_base(BitCoder& coder, Vec3i& position) {
   misses_.emplace_back();
   base_count_ = misses_.size();
-  if (is_known) return true;
   const std::int64_t half = std::int64_t{16} << (grid_bits_ - 1);
   NumberCoder::Guess guess;
   guess.value = half;
   guess.scale = half / 4;
   for (int c = 0; c < 3; ++c) position[c] = base_.code(coder, position[c], guess);
+  return is_on_grid(position);
+}
+
+bool PointCoder::code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position) {
+  misses_.push_back({kUsualNormalMiss, kUsualTangentMiss});
+  NumberCoder::Guess likely;
+  likely.scale = std::int64_t{16} << (grid_bits_ - 5);
+  for (int c = 0; c < 3; ++c) {
+    likely.value = guess[c] * 16;
+    position[c] = loose_.code(coder, position[c], likely);
+  }
   return is_on_grid(position);
 }
 

@@ -21,8 +21,10 @@ class PointCoder {
  public:
   explicit PointCoder(int grid_bits);
 
-  /// Codes the next vertex of the base mesh, unless its position is known. False where what is read lies off the grid.
-  bool code_base(BitCoder& coder, Vec3i& position, bool is_known);
+  /// Codes the next vertex of the base mesh. False where what is read lies off the grid.
+  bool code_base(BitCoder& coder, Vec3i& position);
+  /// Codes the next vertex, which has no ring. False where what is read lies off the grid.
+  bool code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position);
 
   /// Looks at the level before a round.
   void start_round(const PatchMesh& mesh, std::span<const Vec3i> positions);
@@ -64,6 +66,7 @@ class PointCoder {
 
   int grid_bits_;
   NumberCoder base_;
+  NumberCoder loose_;
   NumberCoder numbers_;
   std::vector<Pulls> normal_pulls_, tangent_pulls_;  // by class of ring size
   Traits normal_size_, tangent_size_;

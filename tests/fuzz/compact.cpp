@@ -4,6 +4,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -19,6 +20,7 @@ namespace {
 using lodestone::test::Bytes;
 
 constexpr std::size_t kFixedBytes = 16, kChecksumBytes = 4, kFieldBytes = 1 + 4 * 4;
+constexpr unsigned kFloat = 5126, kDirections = 1;
 
 std::uint32_t checksum(const Bytes& bytes, std::size_t at, std::size_t size) {
   return static_cast<std::uint32_t>(XXH64(bytes.data() + at, size, 0));
@@ -43,12 +45,23 @@ void seal(Bytes& bytes) {
     }
     return value;
   };
-  for (int i = 0; i < 4; ++i) varint();
+  const auto byte = [&] { return at < end ? bytes[at++] : std::uint8_t{0}; };
+  for (std::uint64_t groups = varint(); groups-- > 0 && at < end;) varint(), varint();
+  for (std::uint64_t attributes = varint(); attributes-- > 0 && at < end;) {
+    at += static_cast<std::size_t>(std::min<std::uint64_t>(varint(), end));
+    const unsigned type = byte() | unsigned{byte()} << 8U;
+    const unsigned components = byte();
+    byte();
+    const unsigned coding = byte();
+    byte();
+    if (type == kFloat && coding != kDirections) at += (components + 1) * sizeof(float);
+  }
+  varint(), varint();
   at += 2 * sizeof(float);
   std::uint64_t offset = header_bytes;
   for (std::uint64_t chunks = at < end ? varint() : 0; chunks-- > 0 && at < end;) {
     const std::uint64_t length = varint();
-    for (int i = 0; i < 3; ++i) varint();
+    for (int i = 0; i < 4; ++i) varint();
     ++at;  // deviation
     if (at + 4 > end) break;
     if (offset <= bytes.size() && length <= bytes.size() - offset)
@@ -71,12 +84,16 @@ void decode(const Bytes& bytes) {
 
 std::vector<Bytes> lodestone::test::fuzz_seeds() {
   std::vector<Bytes> seeds;
-  for (const TriangleSoup& soup : {tetrahedron(), icosphere(2, 0.05, 1), fan(9, 0.5), grid(9, 0.1, 1), torus(12, 8),
-                                   annulus(9, 3), terrain(20, 1)})
+  for (const TriangleSoup& soup :
+       {tetrahedron(), icosphere(2, 0.05, 1), fan(9, 0.5), grid(9, 0.1, 1), torus(12, 8), annulus(9, 3), terrain(20, 1),
+        seam_cube(3), seam_sphere(8, 6), slit_grid(8), two_material_sphere(2), faceted_sphere(1),
+        skinned_cylinder(8, 6), morph_grid(6), spheres_at_a_vertex(1), cubes_at_an_edge(2), many_components(3),
+        random_squares(3, 1), stacked(grid(4, 0.1, 1), 2)})
     for (const double dense_rounds : {0.0, 2.0}) {
       const auto assembled = assemble(soup);
       SimplifyOptions options;
       options.dense_rounds = dense_rounds;
+      options.vanish = dense_rounds > 0;
       const auto result = simplify(assembled->mesh, options);
       CompactOptions compact;
       compact.grid_bits = dense_rounds > 0 ? 16 : 9;

@@ -23,6 +23,9 @@ struct CompactGrid {
 struct CompactOptions {
   int grid_bits = 14;               ///< positions become one of 2^this along each edge of the grid's cube, 8 to 16
   std::optional<CompactGrid> grid;  ///< unset: the mesh's own box
+  int normal_bits = 10;             ///< of directions (NORMAL, TANGENT) as points of an octahedron, 2 to 24
+  int texture_bits = 12;            ///< of texture coordinates, over their box, 2 to 24
+  int other_bits = 12;              ///< of other floats, over theirs, 2 to 24; integers stay as they are
 };
 
 /// What the parts of a compact stream take, in bits.
@@ -31,7 +34,9 @@ struct CompactSizes {
   double base = 0;       ///< the base mesh
   double places = 0;     ///< where vertices appear, and the triangulations there
   double positions = 0;  ///< where they lie
+  double wedges = 0;     ///< which wedges belong where, and what is told face by face
   double errors = 0;
+  std::vector<double> attributes;  ///< by attribute
 };
 
 /// A progressive mesh as a compact stream.
@@ -39,8 +44,11 @@ struct CompactStream {
   std::vector<std::byte> bytes;
   CompactSizes sizes;
   std::size_t round_count = 0;
+  std::size_t loose_count = 0;  ///< records that are told face by face: of pieces that vanish, or where sheets meet
   /// By vertex of the mesh given: its number in the mesh that the stream decodes to.
   std::vector<Index> vertex_numbers;
+  /// The same of wedges.
+  std::vector<Index> wedge_numbers;
 };
 
 /// A chunk of a compact stream: it refines the level that those before it lead to.
@@ -50,6 +58,7 @@ struct CompactChunk {
   Index record_begin = 0;          ///< first record; chunk 0 holds the base mesh, too
   Index record_count = 0;          ///< may be 0 in chunk 0
   std::uint64_t vertex_count = 0;  ///< of the level after the chunk
+  std::uint64_t wedge_count = 0;   ///< of the level after the chunk
   std::uint64_t face_count = 0;    ///< of the level after the chunk
   float deviation = 0;             ///< bound of the level after the chunk, mesh units
 };
@@ -59,8 +68,10 @@ struct CompactChunk {
 /// deviation, to which twice what rounding moves a point by is added, rounded up by up to 9 %; the others have that of
 /// the round that they lie in. Fewest bytes come of SimplifyOptions::dense_rounds.
 ///
-/// Deterministic. Errors: Unsupported where the mesh has attributes, several groups, or records that are not one open
-/// or closed sector around one wedge; InvalidArgument for options; LimitExceeded.
+/// Attributes are rounded, too, unless they are integers; their elements come back whole, one for each wedge.
+///
+/// Deterministic. Errors: InvalidArgument for options; LimitExceeded; Unsupported where records do not fit the faces
+/// that they replace.
 Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options = {});
 
 /// Reads where the chunks lie and what they lead to; they need not be there yet. Errors: Malformed, Unsupported

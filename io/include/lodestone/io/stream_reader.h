@@ -42,7 +42,7 @@ struct StreamReaderOptions {
 /// cursor over it goes on; spans of its arrays do not stay.
 ///
 /// Allocates for what has arrived, never for what a number says: the bytes of one chunk; the mesh, about 92 bytes for
-/// each vertex without attributes; and what decoding needs, up to 400 for each, which is given back at the end. One
+/// each vertex without attributes; and what decoding needs, up to 540 for each, which is given back at the end. One
 /// thread at a time, that of cursors over the mesh included.
 class StreamReader {
  public:

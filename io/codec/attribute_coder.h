@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "codec/attribute_spec.h"
+#include "codec/bit_coder.h"
+#include "codec/bit_mixer.h"
+#include "codec/fixed_point.h"
+#include "codec/number_coder.h"
+#include "codec/patch_mesh.h"
+#include "codec/wedge_table.h"
+
+namespace lodestone::detail {
+
+/// What is there before an element of a wedge is coded.
+struct ElementPlace {
+  const PatchMesh& mesh;
+  const WedgeTable& wedges;
+  std::span<const Vec3i> positions;
+  Index wedge = 0;
+  std::span<const Index> faces;  ///< those that have the wedge as their first; in order, if it has a ring
+  std::span<const Index> ring;   ///< wedges around it, each once
+  Index beside = kNoIndex;       ///< without a ring: a wedge that is likely to have about the same; kNoIndex for none
+};
+
+/// The numbers of an attribute so far, and the models that code more.
+class ElementCoder {
+ public:
+  explicit ElementCoder(AttributeSpec spec) : spec_(std::move(spec)) {}
+  ElementCoder(const ElementCoder&) = delete;
+  ElementCoder& operator=(const ElementCoder&) = delete;
+  virtual ~ElementCoder() = default;
+
+  const AttributeSpec& spec() const { return spec_; }
+  std::span<const std::int32_t> numbers(Index wedge) const {
+    return std::span(numbers_).subspan(std::size_t{wedge} * spec_.component_count, spec_.component_count);
+  }
+  void resize(std::size_t wedge_count) { numbers_.resize(wedge_count * spec_.component_count); }
+
+  /// Codes an element; a writer gives it. False where what is read is none.
+  bool code(BitCoder& coder, const ElementPlace& place, std::span<const std::int32_t> given);
+
+ protected:
+  virtual bool code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) = 0;
+  /// Learns of an element that was coded as being that of another wedge.
+  virtual void pass(const ElementPlace& place) = 0;
+  std::int64_t number(Index wedge, std::size_t component) const {
+    return numbers_[std::size_t{wedge} * spec_.component_count + component];
+  }
+
+ private:
+  bool code_same(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers, bool is_writer);
+
+  AttributeSpec spec_;
+  std::vector<std::int32_t> numbers_;
+  BitMixer same_{std::array<std::uint32_t, 1>{kSame}, 1};
+
+  static constexpr std::uint32_t kSame = 4;
+};
+
+/// Codes the attributes of a level's wedges.
+class AttributeCoder {
+ public:
+  explicit AttributeCoder(std::span<const AttributeSpec> specs);
+
+  std::size_t count() const { return coders_.size(); }
+  const ElementCoder& attribute(std::size_t i) const { return *coders_[i]; }
+
+  /// Makes room for as many wedges.
+  void resize(std::size_t wedge_count);
+  /// Codes all wedges of a base mesh. `given`: by attribute, their numbers, of a writer; a reader gives none.
+  bool code_base(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions,
+                 std::span<const std::vector<std::int32_t>> given);
+  /// Codes the wedges of a vertex with these faces. `given`: by attribute, numbers of the wedges from `first_given` on.
+  bool code_vertex(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions,
+                   Index vertex, std::span<const Index> faces, std::span<const std::vector<std::int32_t>> given,
+                   Index first_given);
+
+  /// By attribute: what has been written of it, in bits.
+  std::vector<double> bits;
+
+ private:
+  bool code_wedge(BitCoder& coder, const ElementPlace& place, std::span<const std::vector<std::int32_t>> given,
+                  Index first_given);
+
+  std::vector<std::unique_ptr<ElementCoder>> coders_;
+  std::vector<Index> faces_, ring_;
+};
+
+}  // namespace lodestone::detail

@@ -1,0 +1,140 @@
+#include "codec/attribute_rounding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+namespace lodestone::detail {
+namespace {
+
+constexpr double kUnitTolerance = 0.05;
+
+/// Whether all elements are unit vectors, the fourth component, if there is one, 1 or −1.
+bool are_directions(const Attribute& attribute, const std::vector<float>& values) {
+  const std::size_t size = attribute.component_count;
+  for (std::size_t i = 0; i < values.size(); i += size) {
+    double square = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      square += static_cast<double>(values[i + c]) * static_cast<double>(values[i + c]);
+    if (!(std::abs(square - 1) < kUnitTolerance)) return false;
+    if (size > 3 && std::abs(values[i + 3]) != 1.0F) return false;
+  }
+  return true;
+}
+
+/// Each component's least value, and the largest extent of any.
+void find_grid(const std::vector<float>& values, AttributeSpec& spec) {
+  std::vector<float> high(spec.component_count, -std::numeric_limits<float>::infinity());
+  spec.low.assign(spec.component_count, std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    float &low = spec.low[i % spec.component_count], &most = high[i % spec.component_count];
+    low = std::min(low, values[i]);
+    most = std::max(most, values[i]);
+  }
+  double range = 0;
+  for (std::size_t c = 0; c < spec.component_count; ++c) {
+    if (spec.low[c] > high[c]) spec.low[c] = high[c] = 0;
+    range = std::max(range, static_cast<double>(high[c]) - static_cast<double>(spec.low[c]));
+  }
+  // Rounded up, so that the largest value is within; less where that would go beyond what floats can say.
+  spec.range = static_cast<float>(std::min(range, static_cast<double>(std::numeric_limits<float>::max())));
+  if (static_cast<double>(spec.range) < range) spec.range = std::nextafter(spec.range, HUGE_VALF);
+  for (const float low : spec.low)
+    while (!std::isfinite(low + spec.range)) spec.range *= 0.5F;
+}
+
+std::int32_t integer_component(ComponentType type, const std::byte* at) {
+  const auto load = [&](auto value) {
+    std::memcpy(&value, at, sizeof value);
+    return value;
+  };
+  switch (type) {
+    case ComponentType::Int8:
+      return load(std::int8_t{});
+    case ComponentType::UInt8:
+      return load(std::uint8_t{});
+    case ComponentType::Int16:
+      return load(std::int16_t{});
+    case ComponentType::UInt16:
+      return load(std::uint16_t{});
+    case ComponentType::UInt32:
+    case ComponentType::Float32:
+      break;
+  }
+  return static_cast<std::int32_t>(load(std::uint32_t{}) ^ 0x80000000U);
+}
+
+void round_direction(const float* values, std::int64_t size, std::int32_t* numbers) {
+  std::size_t top = 2;
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum += std::abs(static_cast<double>(values[c]));
+    if (std::abs(values[c]) > std::abs(values[top])) top = c;
+  }
+  std::int64_t rest = size;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (c == top) continue;
+    const double steps = static_cast<double>(values[c]) / sum * static_cast<double>(size);
+    numbers[c] = static_cast<std::int32_t>(
+        std::clamp(std::floor(steps + 0.5), -static_cast<double>(rest), static_cast<double>(rest)));
+    rest -= std::abs(numbers[c]);
+  }
+  numbers[top] = static_cast<std::int32_t>(values[top] < 0 ? -rest : rest);
+}
+
+}  // namespace
+
+AttributeSpec choose_spec(const Attribute& attribute, const CompactOptions& options) {
+  AttributeSpec spec;
+  spec.name = attribute.name;
+  spec.type = attribute.type;
+  spec.component_count = attribute.component_count;
+  spec.normalized = attribute.normalized;
+  const std::string_view name = attribute.name;
+  const bool is_texture = name.starts_with("TEXCOORD_") && attribute.component_count == 2;
+  if (is_texture) spec.coding = AttributeCoding::Texture;
+  if (attribute.type != ComponentType::Float32) return spec;
+  const std::vector<float> values = attribute_values(attribute);
+  const bool is_direction =
+      (name == "NORMAL" && attribute.component_count == 3) || (name == "TANGENT" && attribute.component_count == 4);
+  if (is_direction && are_directions(attribute, values)) {
+    spec.coding = AttributeCoding::Directions;
+    spec.bits = static_cast<std::uint8_t>(options.normal_bits);
+    return spec;
+  }
+  spec.bits = static_cast<std::uint8_t>(is_texture ? options.texture_bits : options.other_bits);
+  find_grid(values, spec);
+  return spec;
+}
+
+std::vector<std::int32_t> rounded(const Attribute& attribute, const AttributeSpec& spec) {
+  const std::size_t size = spec.component_count;
+  const std::size_t count = attribute.data.size() / component_bytes(spec.type);
+  std::vector<std::int32_t> numbers(count);
+  if (spec.is_exact()) {
+    for (std::size_t i = 0; i < count; ++i)
+      numbers[i] = integer_component(spec.type, attribute.data.data() + i * component_bytes(spec.type));
+    return numbers;
+  }
+  const std::vector<float> values = attribute_values(attribute);
+  if (spec.coding == AttributeCoding::Directions) {
+    for (std::size_t i = 0; i < count; i += size) {
+      round_direction(&values[i], spec.highest(), &numbers[i]);
+      if (size > 3) numbers[i + 3] = values[i + 3] > 0 ? 1 : -1;
+    }
+    return numbers;
+  }
+  const double top = static_cast<double>(spec.highest());
+  for (std::size_t i = 0; i < count; ++i) {
+    const double low = static_cast<double>(spec.low[i % size]), range = static_cast<double>(spec.range);
+    const double steps = range > 0 && !std::isnan(values[i]) ? (static_cast<double>(values[i]) - low) / range * top : 0;
+    numbers[i] = static_cast<std::int32_t>(std::floor(std::clamp(steps, 0.0, top) + 0.5));
+  }
+  return numbers;
+}
+
+}  // namespace lodestone::detail

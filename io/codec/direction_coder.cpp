@@ -1,0 +1,160 @@
+// Directions are points of an octahedron, |x| + |y| + |z| = m, as in Cigolle et al.: A survey of efficient
+// representations for independent unit vectors (2014). Two coordinates are coded, those in which the expected direction
+// is short, so that the folds of a map of the octahedron do not come into play; the third follows but for its sign.
+
+#include "codec/direction_coder.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "codec/ring.h"
+
+namespace lodestone::detail {
+namespace {
+
+constexpr int kUsualMiss = 16 * 10;  // of 2^14
+constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
+
+int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(x)) + 1); }
+std::uint32_t hint(int value, int low, int step) { return bucket(value, low, step, NumberCoder::kHints); }
+std::int64_t length_of(const Vec3i& v) { return square_root(squared(v)); }
+
+/// Normals of the faces around a wedge.
+struct Normals {
+  Vec3i by_area;  // unit, as the others
+  Vec3i even;
+  std::int64_t spread = 0;  // mean distance of the faces' from the mean
+};
+
+Normals normals_of(const ElementPlace& place) {
+  Normals result;
+  Vec3i area, even;
+  const auto normal = [&](Index face) {
+    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
+    return cross(place.positions[place.mesh.from(3 * face + 1)] - p,
+                 place.positions[place.mesh.from(3 * face + 2)] - p);
+  };
+  for (const Index face : place.faces) {
+    const Vec3i n = normal(face);
+    area = area + n;
+    even = even + unit(n);
+  }
+  result.by_area = unit(area);
+  result.even = unit(even);
+  for (const Index face : place.faces) result.spread += length_of(unit(normal(face)) - result.by_area);
+  result.spread /= std::max<std::int64_t>(1, static_cast<std::int64_t>(place.faces.size()));
+  return result;
+}
+
+}  // namespace
+
+DirectionCoder::DirectionCoder(const AttributeSpec& spec)
+    : ElementCoder(spec), pulls_({0, 0}, 1 << 17), size_({0, kHalf, kQuarter, kQuarter}, 1 << 14) {}
+
+Vec3i DirectionCoder::direction(Index wedge) const {
+  return unit({number(wedge, 0), number(wedge, 1), number(wedge, 2)});
+}
+
+Vec3i DirectionCoder::mean_of_ring(const ElementPlace& place) const {
+  Vec3i sum;
+  for (const Index other : place.ring) sum = sum + direction(other);
+  return unit(sum);
+}
+
+void DirectionCoder::note_miss(Index wedge, int miss) {
+  if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualMiss);
+  misses_[wedge] = static_cast<std::int16_t>(miss);
+}
+
+void DirectionCoder::pass(const ElementPlace& place) {
+  note_miss(place.wedge, place.wedge > 0 && place.wedge <= misses_.size() ? misses_[place.wedge - 1] : kUsualMiss);
+}
+
+bool DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
+  std::uint32_t positive = 0;
+  for (const Index other : place.ring) positive += number(other, 3) > 0 ? 1 : 0;
+  std::uint32_t context = positive == 0 ? 4 : positive == place.ring.size() ? 5 : 6;
+  if (place.ring.empty()) context = place.beside != kNoIndex && number(place.beside, 3) > 0 ? 7 : 8;
+  numbers[3] = bits_.code(coder, numbers[3] > 0 ? 1 : 0, std::array<std::uint32_t, 1>{context}, 0) != 0 ? 1 : -1;
+  return true;
+}
+
+/// `log_error`: sixteenths of the logarithm of what is expected, of 2^14.
+bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
+                                std::span<std::int32_t> numbers) {
+  const std::int64_t size = spec().highest();
+  const std::int64_t sum = std::abs(expected.x) + std::abs(expected.y) + std::abs(expected.z);
+  int top = 2;
+  for (const int c : {1, 0})
+    if (std::abs(expected[c]) > std::abs(expected[top])) top = c;
+  const Vec3i point = sum == 0 ? Vec3i{0, 0, 16 * size} : expected * (16 * size) / sum;
+  NumberCoder::Guess guess;
+  guess.scale = std::max<std::int64_t>(1, exp2_16(log_error) * 16 * size / std::max<std::int64_t>(sum, 1 << kUnitBits));
+  guess.hints[0] = hint(log_error, 0, 14);
+  guess.hints[1] = hint(static_cast<int>(sum >> (kUnitBits - 4)), 16, 1);
+  std::int64_t rest = size;
+  for (int i = 1; i < 3; ++i) {
+    const int c = (top + i) % 3;
+    guess.kind = 2 * kind + static_cast<std::uint32_t>(i - 1);
+    guess.value = point[c];
+    const auto at = static_cast<std::size_t>(c);
+    const std::int64_t coded = numbers_.code(coder, numbers[at], guess);
+    if (std::abs(coded) > rest) return false;
+    rest -= std::abs(coded);
+    numbers[at] = static_cast<std::int32_t>(coded);
+    guess.hints[2] = hint(log_of(16 * coded - guess.value), 0, 12);
+  }
+  const auto at = static_cast<std::size_t>(top);
+  const bool as_expected = (numbers[at] >= 0) == (expected[top] >= 0);
+  const std::array<std::uint32_t, 1> context = {rest < size / 4 ? 1U : 0U};
+  if (rest == 0 || bits_.code(coder, as_expected ? 1 : 0, context, 0) != 0)
+    numbers[at] = static_cast<std::int32_t>(expected[top] >= 0 ? rest : -rest);
+  else
+    numbers[at] = static_cast<std::int32_t>(expected[top] >= 0 ? -rest : rest);
+  return true;
+}
+
+bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
+  if (numbers.size() > 3 && !code_sign(coder, place, numbers)) return false;
+  if (place.ring.empty()) {
+    note_miss(place.wedge, kUsualMiss);
+    const Vec3i near = place.beside != kNoIndex ? direction(place.beside) : Vec3i{};
+    return code_point(coder, near, 16 * 12, 1, numbers);
+  }
+  const Normals normals = normals_of(place);
+  const Vec3i around = mean_of_ring(place);
+  std::array<Pulls::Features, 3> pulls{};
+  Vec3i expected = normals.by_area;
+  for (int c = 0; c < 3; ++c) {
+    Pulls::Features& f = pulls[static_cast<std::size_t>(c)];
+    f = {(around[c] - normals.by_area[c]) / 4, (normals.even[c] - normals.by_area[c]) / 4};
+    expected[c] += 4 * pulls_.predict(f);
+  }
+  expected = unit(expected);
+  std::int64_t miss_sum = 0;
+  for (const Index other : place.ring) miss_sum += other < misses_.size() ? misses_[other] : kUsualMiss;
+  const auto miss_around = static_cast<int>(miss_sum / static_cast<std::int64_t>(place.ring.size()));
+  const int log_one = 64;
+  std::int64_t turn = 0;
+  for (const Index other : place.ring) turn += length_of(direction(other) - around);
+  turn /= static_cast<std::int64_t>(place.ring.size());
+  const Traits::Features traits = {log_one,
+                                   miss_around,
+                                   log_of(length_of(around - normals.by_area)),
+                                   log_of(normals.spread),
+                                   log_of(turn),
+                                   log_of(length_of(normals.even - normals.by_area))};
+  const auto log_error = static_cast<int>(std::clamp<std::int64_t>(size_.predict(traits), 16, 16 * 14));
+  if (!code_point(coder, expected, log_error, 0, numbers)) return false;
+
+  const Vec3i found = unit({numbers[0], numbers[1], numbers[2]});
+  for (int c = 0; c < 3; ++c) pulls_.add(pulls[static_cast<std::size_t>(c)], (found[c] - normals.by_area[c]) / 4);
+  pulls_.end_sample();
+  const int miss = log_of(length_of(found - expected) + (1 << kUnitBits) / (4 * spec().highest()));
+  size_.add(traits, miss);
+  size_.end_sample();
+  note_miss(place.wedge, miss);
+  return true;
+}
+
+}  // namespace lodestone::detail
