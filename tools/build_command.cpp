@@ -118,7 +118,7 @@ void BuildCommand::add_to(CLI::App& app) {
       "Examples:\n"
       "  lodestone build bunny.obj bunny.glb\n"
       "  lodestone build bunny.obj -o bunny.glb --error 0.1%,0.5%,2% --report bunny.json\n"
-      "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --no-draco\n"
+      "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --compress meshopt\n"
       "  lodestone build bunny.obj -o bunny.glb --html bunny.html\n"
       "  lodestone build town.gltf -o town.glb --profile files\n"
       "  lodestone build *.obj -o lods/");
@@ -191,15 +191,26 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->type_name("NAME")
       ->group(group);
   app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
-  app.add_flag("--no-draco", no_draco, "Write plain geometry that needs no decoder")->group(group);
+  CLI::Option* compress =
+      app.add_option(
+             "--compress", compression,
+             "By Draco, smallest (default); by meshopt, decoded faster, which three.js and Babylon.js read too; "
+             "or not at all, for viewers without a decoder")
+          ->check(CLI::IsMember({"draco", "meshopt", "none"}))
+          ->type_name("NAME")
+          ->group(group);
+  app.add_flag_callback(
+         "--no-draco", [this] { compression = "none"; }, "The same as --compress none")
+      ->excludes(compress)
+      ->group(group);
   CLI::Option* bits =
-      app.add_option("--qp", position_bits, "Bits of a Draco position (default 14, more where the shape needs them)")
+      app.add_option("--qp", position_bits, "Bits of a position (default 14, more where the shape needs them)")
           ->check(CLI::Range(1, 30))
           ->type_name("BITS")
           ->group(group);
   CLI::Option* step =
       app.add_option("--grid-step", grid_step,
-                     "Round Draco positions to multiples of this, in the meshes' own units, instead of a "
+                     "Round positions to multiples of this, in the meshes' own units, instead of a "
                      "grid fitted to the file: tiles built one by one with --lock-border then fit together")
           ->check(CLI::PositiveNumber)
           ->type_name("STEP")

@@ -86,13 +86,22 @@ Result<SimplifyOptions> simplify_options(const BuildCommand& options) {
   return simplify;
 }
 
-AssetOptions asset_options(const BuildCommand& options) {
+Compression compression_of(const std::string& name) {
+  for (const Compression compression : {Compression::Draco, Compression::Meshopt})
+    if (name == name_of(compression)) return compression;
+  return Compression::None;
+}
+
+Result<AssetOptions> asset_options(const BuildCommand& options) {
   AssetOptions asset;
-  asset.draco = !options.no_draco;
-  asset.draco_position_bits = options.position_bits;
+  asset.compression = compression_of(options.compression);
+  asset.position_bits = options.position_bits;
   if (!options.grid_step) return asset;
+  if (asset.compression == Compression::Meshopt && options.grid_origin != BuildCommand{}.grid_origin)
+    return fail(ErrorCode::InvalidArgument,
+                "--grid-origin does not go with --compress meshopt: its grids count from 0");
   const auto origin = [&](std::size_t i) { return static_cast<float>(options.grid_origin[i]); };
-  asset.draco_position_grid = {{origin(0), origin(1), origin(2)}, static_cast<float>(*options.grid_step)};
+  asset.position_grid = {{origin(0), origin(1), origin(2)}, static_cast<float>(*options.grid_step)};
   return asset;
 }
 
@@ -115,7 +124,7 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   options.stream = !command.no_stream;
   options.strict = command.strict;
   options.keep_levels = command.html.has_value();
-  options.storage = asset_options(command);
+  LODESTONE_TRY(options.storage, asset_options(command));
   if (extension_of(command.output) == "gltf") options.storage.gltf_name = command.output.stem().string();
   return options;
 }
@@ -136,11 +145,12 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"importance", options.importance},
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", writes_stream(options)},
-               {"draco", !options.no_draco}};
-  const bool has_bits = !options.no_draco && options.position_bits;
+               {"compression", options.compression}};
+  const bool has_grid = compression_of(options.compression) != Compression::None;
+  const bool has_bits = has_grid && options.position_bits;
   json["position_bits"] = has_bits ? Json(*options.position_bits) : Json(nullptr);
   json["position_grid"] = nullptr;
-  if (!options.no_draco && options.grid_step)
+  if (has_grid && options.grid_step)
     json["position_grid"] = {{"step", *options.grid_step}, {"origin", options.grid_origin}};
   return json;
 }

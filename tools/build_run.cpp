@@ -133,7 +133,7 @@ std::string missed_faces(const BuildReport& report, const BuildCommand& options,
 
 /// Only quantisation is in the way of an error: the whole mesh has none.
 std::string missed_errors(const BuildReport& report, const std::string& targets) {
-  return "errors of " + targets + " were asked for, Draco's grid alone moves vertices by " +
+  return "errors of " + targets + " were asked for, the grid of positions alone moves vertices by " +
          number_text(report.build.grid_error);
 }
 

@@ -129,7 +129,7 @@ Result<void> write_extracted(const std::filesystem::path& input, const Destinati
   StagedFiles files;
   if (to.extension == "glb" || to.extension == "gltf") {
     AssetOptions options;
-    options.draco = false;
+    options.compression = Compression::None;
     if (to.extension == "gltf") options.gltf_name = to.path.stem().string();
     LODESTONE_TRY(const EncodedAsset asset, encode_scene_level(scene, extracted.meshes, 0, options));
     LODESTONE_CHECK(add_asset(asset, to.path, {input, scene.files()}, files));

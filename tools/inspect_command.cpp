@@ -44,7 +44,7 @@ Json level_json(const Asset::Level& level) {
       {"faces", level.face_count},
       {"vertices", level.vertex_count},
       {"bytes", level.byte_length},
-      {"draco", level.draco},
+      {"compression", name_of(level.compression)},
       {"deviation", {{"max", level.maximum_deviation}, {"mean", level.mean_deviation}, {"rms", level.rms_deviation}}},
       {"curvature_error", level.curvature_error},
       {"screen_coverage", level.screen_coverage}};
@@ -115,14 +115,14 @@ Json asset_json(const std::string& path, const DecodedAsset& asset, std::span<co
 }
 
 void print_levels(const DecodedAsset& asset) {
-  TextTable table({"level", "faces", "vertices", "max", "mean", "rms", "epsilon", "bytes", "coding"});
+  TextTable table({"level", "faces", "vertices", "max", "mean", "rms", "epsilon", "bytes", "compression"});
   const double diagonal = asset.levels[0].box.diagonal();
   for (std::size_t i = 0; i < asset.levels.size(); ++i) {
     const Asset::Level& level = asset.levels[i];
     table.add({text_of(i), text_of(level.face_count), text_of(level.vertex_count),
                percent_text(level.maximum_deviation, diagonal), percent_text(level.mean_deviation, diagonal),
                percent_text(level.rms_deviation, diagonal), number_text(level.curvature_error),
-               text_of(level.byte_length), level.draco ? "draco" : "plain"});
+               text_of(level.byte_length), name_of(level.compression)});
   }
   table.print();
 }

@@ -12,6 +12,8 @@
 namespace lodestone::detail {
 namespace {
 
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+
 void pad_to_four(std::vector<std::byte>& bytes, std::byte filler) {
   while (bytes.size() % 4 != 0) bytes.push_back(filler);
 }
@@ -80,6 +82,24 @@ std::size_t GlbBuilder::add_view(std::span<const std::byte> bytes, ViewTarget ta
   return add("bufferViews", std::move(view));
 }
 
+std::size_t GlbBuilder::add_packed_view(const MeshoptView& packed, ViewTarget target) {
+  Json extension = {{"buffer", 0},
+                    {"byteOffset", add_bytes(packed.bytes, 4)},
+                    {"byteLength", packed.bytes.size()},
+                    {"byteStride", packed.stride},
+                    {"count", packed.count},
+                    {"mode", packed.mode == MeshoptMode::Triangles ? "TRIANGLES" : "ATTRIBUTES"}};
+  if (packed.filter == MeshoptFilter::Octahedral) extension["filter"] = "OCTAHEDRAL";
+  if (packed.filter == MeshoptFilter::Exponential) extension["filter"] = "EXPONENTIAL";
+  Json view = {{"buffer", 1}, {"byteOffset", unpacked_bytes_}, {"byteLength", packed.unpacked_bytes()}};
+  if (target == ViewTarget::Vertices) view["byteStride"] = packed.stride;
+  if (target != ViewTarget::None) view["target"] = static_cast<int>(target);
+  view["extensions"][kMeshopt] = std::move(extension);
+  unpacked_bytes_ += (packed.unpacked_bytes() + 3) / 4 * 4;
+  require_extension(kMeshopt);
+  return add("bufferViews", std::move(view));
+}
+
 void GlbBuilder::use_extension(const char* name) { list_once(document_, "extensionsUsed", name); }
 
 void GlbBuilder::require_extension(const char* name) {
@@ -104,6 +124,10 @@ void GlbBuilder::close_document() {
   if (binary_.empty() && document_.contains("bufferViews")) binary_.resize(4);
   document_.erase("buffers");
   if (!binary_.empty()) document_["buffers"] = Json::array({Json{{"byteLength", binary_.size()}}});
+  if (unpacked_bytes_ == 0) return;
+  Json unpacked = {{"byteLength", unpacked_bytes_}};
+  unpacked["extensions"][kMeshopt]["fallback"] = true;
+  document_["buffers"].push_back(std::move(unpacked));
 }
 
 Result<std::vector<std::byte>> GlbBuilder::finish() {

@@ -10,13 +10,15 @@
 #include <lodestone/core/result.h>
 
 #include "base/json.h"
+#include "gltf/meshopt_encode.h"
 
 namespace lodestone::detail {
 
 /// What a bufferView is for: glTF's `target`.
 enum class ViewTarget { None = 0, Vertices = 34962, Indices = 34963 };
 
-/// Adds objects to a glTF document and bytes to its one buffer, and writes both as a .glb.
+/// Adds objects to a glTF document and bytes to its one buffer, and writes both as a .glb. A second buffer without
+/// bytes stands for what meshopt's views unpack to, as their extension wants it.
 class GlbBuilder {
  public:
   /// Objects that nothing needs any more, by top-level array, ascending: their numbers go to new objects first.
@@ -34,6 +36,8 @@ class GlbBuilder {
   /// Appends bytes to the binary chunk on a multiple of 4 and returns the index of a new bufferView of them.
   /// `stride` 0: none is written.
   std::size_t add_view(std::span<const std::byte> bytes, ViewTarget target = ViewTarget::None, std::size_t stride = 0);
+  /// Appends packed bytes in the same way, and requires the extension of a decoder.
+  std::size_t add_packed_view(const MeshoptView& packed, ViewTarget target);
   /// Appends bytes at an offset that leaves `remainder` when divided by `alignment`, and returns that offset.
   std::uint64_t add_bytes(std::span<const std::byte> bytes, std::size_t alignment, std::size_t remainder = 0);
 
@@ -63,6 +67,7 @@ class GlbBuilder {
   Json document_;
   FreeSlots free_slots_;
   std::vector<std::byte> binary_;
+  std::uint64_t unpacked_bytes_ = 0;  // of all packed views, each on a multiple of 4
 };
 
 /// The name and version that stand in asset.generator.

@@ -277,6 +277,15 @@ Result<BufferView> GltfDocument::buffer_view(std::size_t index) const {
   return view;
 }
 
+Result<GltfDocument::StoredView> GltfDocument::stored_view(std::size_t index) const {
+  LODESTONE_TRY(const Json* const json, element("bufferViews", "buffer view", index));
+  const Json* extension = meshopt_extension(*json);
+  StoredView view{0, extension != nullptr};
+  LODESTONE_TRY(view.byte_length,
+                size_member(view.packed ? *extension : *json, "byteLength", text("buffer view ", index)));
+  return view;
+}
+
 Result<AccessorData> GltfDocument::accessor_type(std::size_t index) const {
   LODESTONE_TRY(const Json* const json, element("accessors", "accessor", index));
   return read_accessor_type(*json, text("accessor ", index));

@@ -53,6 +53,12 @@ class GltfDocument {
   Result<const Json*> element(const char* array, const char* what, std::size_t index) const;
 
   Result<BufferView> buffer_view(std::size_t index) const;
+  /// How a buffer view lies in the file. Errors: Malformed.
+  struct StoredView {
+    std::size_t byte_length = 0;
+    bool packed = false;  ///< by meshopt
+  };
+  Result<StoredView> stored_view(std::size_t index) const;
   Result<AccessorData> accessor(std::size_t index) const;
   /// Returns what the accessor declares, without its elements: those of Draco data have none of their own.
   Result<AccessorData> accessor_type(std::size_t index) const;

@@ -39,12 +39,16 @@ Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<co
   return std::move(out.mesh);
 }
 
-Mesh in_hardware_order(const Mesh& mesh) {
+Mesh in_hardware_order(const Mesh& mesh, FaceOrder order) {
   std::vector<Index> corner_wedge;
   std::vector<Index> face_material;
   for (const FacesOfMaterial& group : split_by_material(mesh)) {
     std::vector<Index> corners(group.corner_wedge.size());
-    meshopt_optimizeVertexCache(corners.data(), group.corner_wedge.data(), corners.size(), mesh.wedge_count());
+    const std::size_t count = corners.size(), wedges = mesh.wedge_count();
+    if (order == FaceOrder::Packing)
+      meshopt_optimizeVertexCacheStrip(corners.data(), group.corner_wedge.data(), count, wedges);
+    else
+      meshopt_optimizeVertexCache(corners.data(), group.corner_wedge.data(), count, wedges);
     corner_wedge.insert(corner_wedge.end(), corners.begin(), corners.end());
     if (!mesh.face_material.empty()) face_material.insert(face_material.end(), corners.size() / 3, group.material);
   }
@@ -64,10 +68,10 @@ std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_
 }
 
 PackedIndices pack_indices(std::span<const Index> indices, std::size_t point_count) {
-  const bool narrow = point_count <= 0xffff;  // The largest value of a type is not an index.
+  const bool narrow = index_type(point_count) == ComponentType::UInt16;
   const std::vector<std::uint16_t> shorts(indices.begin(), narrow ? indices.end() : indices.begin());
   const auto bytes = narrow ? std::as_bytes(std::span(shorts)) : std::as_bytes(indices);
-  return {narrow ? ComponentType::UInt16 : ComponentType::UInt32, {bytes.begin(), bytes.end()}};
+  return {index_type(point_count), {bytes.begin(), bytes.end()}};
 }
 
 PositionBounds bounds_of(std::span<const std::byte> positions) {

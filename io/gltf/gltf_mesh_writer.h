@@ -28,14 +28,22 @@ Mesh with_attributes(const Mesh& mesh, std::span<const Attribute* const> attribu
 /// vertices in the order in which the faces use them.
 Mesh submesh(const Mesh& mesh, std::span<const Index> corner_wedge, std::span<const Attribute* const> attributes);
 
+/// What an order of faces is best for, besides the vertex cache.
+enum class FaceOrder { Drawing, Packing };
+
 /// Returns the mesh with faces and wedges in an order that graphics hardware likes: the vertex cache's, then the order
 /// of first use. Faces of one material stay together.
-Mesh in_hardware_order(const Mesh& mesh);
+Mesh in_hardware_order(const Mesh& mesh, FaceOrder order = FaceOrder::Drawing);
 
 /// Returns packed elements each on a multiple of 4 bytes, as glTF demands of vertex data.
 std::vector<std::byte> with_stride(std::span<const std::byte> packed, std::size_t element_bytes, std::size_t stride);
 
-/// Indices in the narrowest type that glTF lets them have.
+/// The narrowest type that glTF lets indices of so many points have: the largest value of a type is none.
+constexpr ComponentType index_type(std::size_t point_count) {
+  return point_count <= 0xffff ? ComponentType::UInt16 : ComponentType::UInt32;
+}
+
+/// Indices in that type.
 struct PackedIndices {
   ComponentType type = ComponentType::UInt32;
   std::vector<std::byte> bytes;

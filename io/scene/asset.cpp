@@ -64,20 +64,26 @@ double screen_coverage(const Json& finest, std::size_t level) {
   return (*list)[level].get<double>();
 }
 
-/// Returns the bytes of the bufferViews that the meshes' geometry lies in, each view once.
-Result<std::uint64_t> stored_bytes(const GltfDocument& document, const std::set<std::size_t>& meshes) {
+/// What the meshes' geometry takes, each bufferView once, and how it is compressed.
+struct StoredGeometry {
+  std::uint64_t bytes = 0;
+  Compression compression = Compression::None;
+};
+
+Result<StoredGeometry> stored_geometry(const GltfDocument& document, const std::set<std::size_t>& meshes) {
+  StoredGeometry stored;
   std::set<std::size_t> views;
   for (const std::size_t mesh : meshes) {
+    if (uses_draco(document, mesh)) stored.compression = Compression::Draco;
     LODESTONE_TRY(const auto of_mesh, geometry_views(document, mesh));
     views.insert(of_mesh.begin(), of_mesh.end());
   }
-  std::uint64_t bytes = 0;
-  for (const std::size_t view : views) {
-    LODESTONE_TRY(const Json* const json, document.element("bufferViews", "buffer view", view));
-    LODESTONE_TRY(const std::size_t size, size_member(*json, "byteLength", text("buffer view ", view)));
-    bytes += size;
+  for (const std::size_t number : views) {
+    LODESTONE_TRY(const GltfDocument::StoredView view, document.stored_view(number));
+    stored.bytes += view.byte_length;
+    if (view.packed && stored.compression == Compression::None) stored.compression = Compression::Meshopt;
   }
-  return bytes;
+  return stored;
 }
 
 using Chains = std::vector<std::vector<std::size_t>>;
@@ -126,8 +132,9 @@ Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index,
   std::set<std::size_t> meshes;
   for (const MeshInstance& instance : instances) meshes.insert(instance.mesh);
   LODESTONE_TRY(level.vertex_count, count_vertices(document, instances));
-  for (const std::size_t mesh : meshes) level.draco |= uses_draco(document, mesh);
-  LODESTONE_TRY(level.byte_length, stored_bytes(document, meshes));
+  LODESTONE_TRY(const StoredGeometry stored, stored_geometry(document, meshes));
+  level.byte_length = stored.bytes;
+  level.compression = stored.compression;
   LODESTONE_CHECK(read_numbers(document, index, chains, level));
   return level;
 }
@@ -189,6 +196,18 @@ Result<Asset> Asset::read(const std::filesystem::path& path) {
 Result<Asset> Asset::read_bytes(std::span<const std::byte> bytes) {
   LODESTONE_TRY(Impl opened, Impl::open(bytes, nothing_beside));
   return Asset(std::make_shared<const Impl>(std::move(opened)));
+}
+
+const char* name_of(Compression compression) {
+  switch (compression) {
+    case Compression::Draco:
+      return "draco";
+    case Compression::Meshopt:
+      return "meshopt";
+    case Compression::None:
+      break;
+  }
+  return "none";
 }
 
 std::size_t Asset::level_count() const { return impl_->level_count; }

@@ -76,7 +76,7 @@ std::vector<EncodedLevel> encode_levels(std::span<const LevelToEncode> levels, c
   std::vector<EncodedLevel> encoded(levels.size());
   for_each_in_parallel(levels.size(),
                        [&](std::size_t i) { encoded[i].groups = split_by_material(*levels[i].level->mesh); });
-  if (!options.draco) return encoded;
+  if (options.compression != Compression::Draco) return encoded;
   std::vector<std::pair<std::size_t, std::size_t>> jobs;  // level and group
   for (std::size_t level = 0; level < levels.size(); ++level) {
     encoded[level].outputs.resize(encoded[level].groups.size());

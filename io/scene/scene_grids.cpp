@@ -11,6 +11,8 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "scene/meshopt_accessors.h"
+
 namespace lodestone::detail {
 namespace {
 
@@ -25,6 +27,11 @@ constexpr int kMostExactBits = 23;
 constexpr double kStepsPerFace = 10;
 // Nearly all edges keep so many steps; the grid need not be finer for a small share of faces, which often are slivers.
 constexpr double kStepsPerEdge = 4, kSmallerShare = 0.02;
+
+// What the exponential filter has room for, without the smallest floats, which its decoders do not make.
+constexpr int kMostBinaryExponent = 100;
+constexpr double kMostMultiple = (1 << 23) - 1;
+constexpr int kMostOctahedralBits = 16;
 
 /// Returns the fewest bits whose grid of such a range has steps of at most `step`.
 int bits_for_step(double range, double step) {
@@ -72,10 +79,39 @@ class GridFitter {
     return QuantizationGrid{origin(), static_cast<float>(step * ((1 << bits) - 1)), bits};
   }
 
+  /// The grid of steps of 2^exponent that count from 0; none where values are too many steps from there.
+  QuantizationGrid binary_grid(int exponent) const {
+    const double step = std::ldexp(1.0, exponent);
+    if (!(range() <= kLargestRange) || std::abs(exponent) > kMostBinaryExponent || farthest() > kMostMultiple * step)
+      return exact();
+    const int bits = std::max(1, bits_for_step(range() + step, step));
+    std::vector<float> origin = this->origin();
+    for (float& x : origin) x = static_cast<float>(std::floor(static_cast<double>(x) / step) * step);
+    return {std::move(origin), static_cast<float>(step * ((1 << bits) - 1)), bits};
+  }
+
+  /// The exponent of the longest such step that is no longer than that of a grid of so many bits.
+  int exponent_for(int bits) const {
+    return std::ilogb((range() > 0 ? range() : 1) / static_cast<double>((std::uint64_t{1} << bits) - 1));
+  }
+
+  /// The exponent of the longest step that all values are multiples of; nothing where all are 0.
+  std::optional<int> exact_exponent() const {
+    return unit_ == std::numeric_limits<int>::max() ? std::nullopt : std::optional(unit_);
+  }
+
   static QuantizationGrid exact() { return {{}, 1, 0}; }
 
  private:
   static constexpr double kLargestRange = std::numeric_limits<float>::max() / 4;  // Draco computes beyond it.
+
+  /// From 0.
+  double farthest() const {
+    float farthest = 0;
+    for (std::size_t c = 0; c < low_.size(); ++c)
+      if (low_[c] <= high_[c]) farthest = std::max({farthest, std::abs(low_[c]), std::abs(high_[c])});
+    return static_cast<double>(farthest);
+  }
 
   /// The exponent of the last binary digit that is set.
   static int lowest_digit(float value) {
@@ -109,10 +145,10 @@ struct Fineness {
 };
 
 Fineness fineness_of(const std::string& name, const AssetOptions& options) {
-  if (name.starts_with("TEXCOORD_")) return {options.draco_texcoord_bits, true};
-  if (name.starts_with("COLOR_")) return {options.draco_generic_bits, true};
-  if (name.starts_with("WEIGHTS_")) return {std::max(options.draco_generic_bits, kMinWeightBits), true};
-  if (name == "TANGENT") return {options.draco_generic_bits, false};
+  if (name.starts_with("TEXCOORD_")) return {options.texcoord_bits, true};
+  if (name.starts_with("COLOR_")) return {options.generic_bits, true};
+  if (name.starts_with("WEIGHTS_")) return {std::max(options.generic_bits, kMinWeightBits), true};
+  if (name == "TANGENT") return {options.generic_bits, false};
   return {};
 }
 
@@ -124,6 +160,23 @@ QuantizationGrid column_grid(const GridFitter& fitter, const Fineness& fineness)
   return bits > std::max(fineness.bits, kMostExactBits) ? GridFitter::exact() : fitter.grid(bits);
 }
 
+/// A grid of meshopt's, of the longest step that keeps values as they are, or of one that divides the unit in as many
+/// as are wanted.
+QuantizationGrid binary_column_grid(const GridFitter& fitter, int bits) {
+  const auto exact = fitter.exact_exponent();
+  if (exact && (bits == 0 || *exact >= -bits)) return fitter.binary_grid(*exact);
+  return bits == 0 ? GridFitter::exact() : fitter.binary_grid(-bits);
+}
+
+QuantizationGrid fit_column(const GridFitter& fitter, const Attribute& layout, const AssetOptions& options) {
+  const Fineness fineness = fineness_of(layout.name, options);
+  if (options.compression == Compression::Meshopt) {
+    if (!is_packed_direction(layout)) return binary_column_grid(fitter, fineness.bits);
+    return fitter.grid(std::min(layout.name == "NORMAL" ? options.normal_bits : fineness.bits, kMostOctahedralBits));
+  }
+  return layout.name == "NORMAL" ? fitter.grid(options.normal_bits) : column_grid(fitter, fineness);
+}
+
 std::vector<QuantizationGrid> fit_columns(std::span<const LevelGeometry> levels, const AssetOptions& options) {
   std::vector<QuantizationGrid> grids;
   for (std::size_t c = 0; c < levels[0].columns.size(); ++c) {
@@ -131,8 +184,7 @@ std::vector<QuantizationGrid> fit_columns(std::span<const LevelGeometry> levels,
     GridFitter fitter(layout.component_count);
     if (layout.type == ComponentType::Float32)
       for (const LevelGeometry& level : levels) fitter.add(as_floats(level.columns[c]->data));
-    grids.push_back(layout.name == "NORMAL" ? fitter.grid(options.draco_normal_bits)
-                                            : column_grid(fitter, fineness_of(layout.name, options)));
+    grids.push_back(fit_column(fitter, layout, options));
   }
   return grids;
 }
@@ -142,23 +194,27 @@ double axis_distance(const Vec3& a, const Vec3& b) {
   return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
-/// A grid of so many bits that its range is the step times a power of two: Draco divides without an error.
-QuantizationGrid given_grid(const PositionGrid& given) {
+/// A grid of so many bits that its range is the step times a power of two: Draco divides without an error. Meshopt has
+/// the next shorter step that is a power of two, whose multiples count from 0.
+QuantizationGrid given_grid(const PositionGrid& given, Compression compression) {
   constexpr int kBits = 30;
+  if (compression == Compression::Meshopt)
+    return {{0, 0, 0}, std::ldexp(static_cast<float>(kMostMultiple), std::ilogb(given.step)), kMostExactBits};
   return {{given.origin.x, given.origin.y, given.origin.z}, std::ldexp(given.step, kBits), kBits};
 }
 
-/// Differences of positions must stay within 32 bits.
-Result<void> check_reach(const PositionGrid& given, std::span<const std::vector<LevelGeometry>> levels) {
-  constexpr double kMostSteps = 1 << 29;
+/// Differences of positions must stay within 32 bits; meshopt's multiples within 24.
+Result<void> check_reach(const PositionGrid& given, Compression compression,
+                         std::span<const std::vector<LevelGeometry>> levels) {
+  const double most_steps = compression == Compression::Meshopt ? 1 << 22 : 1 << 29;
   double farthest = 0;
   for (const std::vector<LevelGeometry>& mesh : levels)
     for (const LevelGeometry& level : mesh)
       for (const Vec3f& p : level.mesh->positions)
         farthest = std::max(farthest, axis_distance(Vec3(p), Vec3(given.origin)) / static_cast<double>(given.step));
-  if (farthest <= kMostSteps) return {};
+  if (farthest <= most_steps) return {};
   return fail(ErrorCode::InvalidArgument, text("positions lie up to ", farthest, " steps of ", given.step,
-                                               " from the grid's origin, more than ", kMostSteps));
+                                               " from the grid's origin, more than ", most_steps));
 }
 
 /// Returns the longest step that a mesh keeps its shape on.
@@ -198,8 +254,8 @@ class SharedGrid {
 
   /// Adds a mesh, which says how fine the grid must be.
   void add(const SceneMesh& mesh) {
-    if (options_.draco_position_bits || options_.draco_position_grid) return;
-    const double step = 2 / std::sqrt(3.0) * options_.draco_position_error / mesh.scale;
+    if (options_.position_bits || options_.position_grid) return;
+    const double step = 2 / std::sqrt(3.0) * options_.position_error / mesh.scale;
     step_ = std::min({step_, step, step_for_shape(mesh.mesh)});
   }
 
@@ -207,13 +263,18 @@ class SharedGrid {
   void add(const Mesh& level) { fitter_.add(as_floats(level.positions)); }
 
   QuantizationGrid grid() const {
-    if (options_.draco_position_grid) return given_grid(*options_.draco_position_grid);
-    if (options_.draco_position_bits) return fitter_.grid(*options_.draco_position_bits);
+    if (options_.position_grid) return given_grid(*options_.position_grid, options_.compression);
+    if (options_.position_bits) return grid(*options_.position_bits);
     const int bits = std::max(kDefaultPositionBits, bits_for_step(fitter_.range(), step_));
-    return bits > kMostExactBits ? GridFitter::exact() : fitter_.grid(bits);
+    return bits > kMostExactBits ? GridFitter::exact() : grid(bits);
   }
 
  private:
+  QuantizationGrid grid(int bits) const {
+    const bool binary = options_.compression == Compression::Meshopt;
+    return binary ? fitter_.binary_grid(fitter_.exponent_for(bits)) : fitter_.grid(bits);
+  }
+
   const AssetOptions& options_;
   GridFitter fitter_{3};
   double step_ = HUGE_VAL;
@@ -241,7 +302,7 @@ std::vector<QuantizationGrid> fit_positions(const Scene& scene, const AssetOptio
 
 Result<std::vector<QuantizationGrids>> fit_grids(const Scene& scene, std::span<const std::vector<LevelGeometry>> levels,
                                                  const AssetOptions& options) {
-  if (options.draco_position_grid) LODESTONE_CHECK(check_reach(*options.draco_position_grid, levels));
+  if (options.position_grid) LODESTONE_CHECK(check_reach(*options.position_grid, options.compression, levels));
   const auto positions = fit_positions(scene, options, [&](std::size_t mesh, const auto& add) {
     for (const LevelGeometry& level : levels[mesh]) add(*level.mesh);
   });
@@ -256,7 +317,7 @@ namespace lodestone {
 
 std::vector<double> quantisation_errors(const Scene& scene, const AssetOptions& options) {
   std::vector<double> errors(scene.meshes().size());
-  if (!options.draco) return errors;
+  if (options.compression == Compression::None) return errors;
   const auto grids =
       detail::fit_positions(scene, options, [&](std::size_t mesh, const auto& add) { add(scene.meshes()[mesh].mesh); });
   for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = grids[i].point_error();

@@ -11,6 +11,7 @@
 #include "base/bytes.h"
 #include "gltf/gltf_attribute.h"
 #include "gltf/gltf_mesh_writer.h"
+#include "scene/meshopt_accessors.h"
 #include "scene/scene_buffers.h"
 #include "scene/scene_mesh.h"
 
@@ -64,30 +65,36 @@ Result<Mesh> joined(const TriangleSoup& soup) {
 /// Adds the accessors of a level's primitives, one primitive or one level at a time.
 class GeometryWriter {
  public:
-  GeometryWriter(GlbBuilder& builder, const MeshSource& source, const LevelGeometry& level, const AssetOptions& options,
-                 WrittenLevel& written)
-      : builder_(builder), source_(source), level_(level), options_(options), written_(written) {}
+  GeometryWriter(GlbBuilder& builder, const MeshSource& source, const LevelGeometry& level,
+                 const QuantizationGrids& grids, const AssetOptions& options, WrittenLevel& written)
+      : builder_(builder), source_(source), level_(level), grids_(grids), options_(options), written_(written) {}
 
   std::map<Index, PrimitiveGeometry> write(const EncodedLevel& encoded) {
     std::map<Index, PrimitiveGeometry> geometry;
-    if (!options_.draco && share_vertices(encoded.groups)) return write_shared();
+    if (packs()) written_.collapsed_face_count = count_collapsed(*level_.mesh);
+    if (!uses_draco() && share_vertices(encoded.groups)) return write_shared();
     for (std::size_t i = 0; i < encoded.groups.size(); ++i) {
       const FacesOfMaterial& group = encoded.groups[i];
       const SourcePrimitive& primitive = source_.primitives[group.material];
       geometry[group.material] =
-          options_.draco ? write_draco(primitive, group, encoded.outputs[i]) : write_plain(primitive, group);
+          uses_draco() ? write_draco(primitive, group, encoded.outputs[i]) : write_plain(primitive, group);
     }
     return geometry;
   }
 
   /// Returns what clients get of the level. Pre: it is written, with `measure` set.
   Result<Mesh> decoded() {
-    if (!options_.draco) return with_attributes(*level_.mesh, level_.columns);
+    if (packs()) return joined(to_soup(with_attributes(*level_.mesh, level_.columns)));
+    if (!uses_draco()) return with_attributes(*level_.mesh, level_.columns);
     complete_attributes(source_, decoded_);
     return joined(decoded_);
   }
 
  private:
+  bool uses_draco() const { return options_.compression == Compression::Draco; }
+  bool packs() const { return options_.compression == Compression::Meshopt; }
+  FaceOrder order() const { return packs() ? FaceOrder::Packing : FaceOrder::Drawing; }
+
   bool share_vertices(std::span<const FacesOfMaterial> groups) const {
     return std::all_of(groups.begin(), groups.end(), [&](const FacesOfMaterial& group) {
       const SourcePrimitive& first = source_.primitives[groups[0].material];
@@ -100,37 +107,48 @@ class GeometryWriter {
     std::map<Index, PrimitiveGeometry> geometry;
     if (level_.mesh->face_count() == 0) return geometry;
     const SourcePrimitive& primitive = source_.primitives[level_.mesh->material_of(0)];
-    const Mesh ordered = in_hardware_order(with_attributes(*level_.mesh, attributes_of(level_, primitive)));
+    const Mesh ordered = in_hardware_order(with_attributes(*level_.mesh, attributes_of(level_, primitive)), order());
     count(ordered.face_count(), ordered.wedge_count());
     const PrimitiveGeometry shared = write_vertices(primitive, ordered);
     for (const FacesOfMaterial& group : split_by_material(ordered)) {
       geometry[group.material] = shared;
-      geometry[group.material].indices = add_indices(builder_, group.corner_wedge, ordered.wedge_count());
+      geometry[group.material].indices = store_indices(group.corner_wedge, ordered.wedge_count());
     }
     return geometry;
   }
 
   PrimitiveGeometry write_plain(const SourcePrimitive& primitive, const FacesOfMaterial& group) {
-    const Mesh mesh = in_hardware_order(submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive)));
+    const Mesh mesh =
+        in_hardware_order(submesh(*level_.mesh, group.corner_wedge, attributes_of(level_, primitive)), order());
     count(mesh.face_count(), mesh.wedge_count());
     PrimitiveGeometry geometry = write_vertices(primitive, mesh);
-    geometry.indices = add_indices(builder_, mesh.corner_wedge, mesh.wedge_count());
-    if (options_.keep_decoded && options_.draco) note_decoded(primitive, group.material, mesh);
+    geometry.indices = store_indices(mesh.corner_wedge, mesh.wedge_count());
+    if (options_.keep_decoded && uses_draco()) note_decoded(primitive, group.material, mesh);
     return geometry;
   }
 
   /// Writes all but the indices. Pre: the mesh has the primitive's columns, in their order.
   PrimitiveGeometry write_vertices(const SourcePrimitive& primitive, const Mesh& mesh) {
     PrimitiveGeometry geometry;
-    geometry.attributes["POSITION"] = add_positions(builder_, mesh);
+    geometry.attributes["POSITION"] =
+        packs() ? add_packed_positions(builder_, mesh, grids_.position) : add_positions(builder_, mesh);
     for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
       const MeshColumn& column = source_.columns[primitive.columns[i]];
       if (column.target) continue;
       if (column.needs_quantization) builder_.require_extension("KHR_mesh_quantization");
-      geometry.attributes[column.semantic] = add_attribute(builder_, mesh.attributes[i]);
+      geometry.attributes[column.semantic] = store_attribute(primitive.columns[i], mesh.attributes[i]);
     }
     geometry.targets = write_targets(primitive, mesh);
     return geometry;
+  }
+
+  std::size_t store_attribute(std::size_t column, const Attribute& attribute) {
+    return packs() ? add_packed_attribute(builder_, attribute, grids_.attributes[column])
+                   : add_attribute(builder_, attribute);
+  }
+
+  std::size_t store_indices(std::span<const Index> indices, std::size_t point_count) {
+    return packs() ? add_packed_indices(builder_, indices, point_count) : add_indices(builder_, indices, point_count);
   }
 
   /// Morph targets are plain accessors, with Draco too.
@@ -141,7 +159,7 @@ class GeometryWriter {
     for (std::size_t i = 0; i < primitive.columns.size(); ++i) {
       const MeshColumn& column = source_.columns[primitive.columns[i]];
       if (!column.target) continue;
-      const std::size_t accessor = add_attribute(builder_, mesh.attributes[i]);
+      const std::size_t accessor = store_attribute(primitive.columns[i], mesh.attributes[i]);
       if (column.semantic == "POSITION") set_bounds(builder_.at("accessors", accessor), mesh.attributes[i].data);
       targets[*column.target][column.semantic] = accessor;
     }
@@ -197,9 +215,8 @@ class GeometryWriter {
       ids[column.semantic] = encoded.attribute_ids[next];
       geometry.attributes[column.semantic] = builder_.add("accessors", attribute_accessor(decoded.attributes[++next]));
     }
-    const auto index_type = decoded.point_count <= 0xffff ? ComponentType::UInt16 : ComponentType::UInt32;
-    geometry.indices =
-        builder_.add("accessors", attribute_accessor({index_type, 1, false, decoded.indices.size(), {}}));
+    geometry.indices = builder_.add(
+        "accessors", attribute_accessor({index_type(decoded.point_count), 1, false, decoded.indices.size(), {}}));
     geometry.draco = {{"bufferView", builder_.add_view(encoded.bytes)}, {"attributes", std::move(ids)}};
     return geometry;
   }
@@ -226,6 +243,7 @@ class GeometryWriter {
   GlbBuilder& builder_;
   const MeshSource& source_;
   const LevelGeometry& level_;
+  const QuantizationGrids& grids_;
   const AssetOptions& options_;
   WrittenLevel& written_;
   TriangleSoup decoded_;  // only with options_.keep_decoded and Draco
@@ -246,28 +264,64 @@ Json replace_geometry(const Json& source, const PrimitiveGeometry& geometry) {
   return primitive;
 }
 
+bool has_type_of(const Attribute& a, const Attribute& b) {
+  return a.type == b.type && (a.type == ComponentType::Float32 || a.normalized == b.normalized);
+}
+
+/// Whether normalized integers of a column can hold the attribute.
+bool fits_after_rounding(const Attribute& a, const Attribute& b) {
+  return a.type == ComponentType::Float32 && b.normalized && b.type != ComponentType::Float32;
+}
+
 bool belongs_to(const Attribute& a, const MeshColumn& column) {
   const Attribute& b = column.layout;
-  const bool integers = a.type != ComponentType::Float32;
-  if (a.type != b.type || a.component_count != b.component_count || (integers && a.normalized != b.normalized))
-    return false;
+  if (a.component_count != b.component_count) return false;
   if (a.name == b.name) return true;
   // A level out of a stream has the name from before the file was written.
   const auto semantic = gltf_semantic(a);
   return !column.target && semantic && semantic->name == column.semantic;
 }
 
+/// Floats as normalized integers.
+Attribute as_stored(const Attribute& floats, const Attribute& layout) {
+  Attribute out = layout;
+  const std::vector<float> values = attribute_values(floats);
+  const std::size_t size = component_bytes(layout.type);
+  out.data.resize(values.size() * size);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    store_component(layout.type, true, static_cast<double>(values[i]), out.data.data() + i * size);
+  return out;
+}
+
 }  // namespace
 
+void LevelGeometry::replace_column(std::size_t column, Attribute attribute) {
+  changed.push_back(std::make_unique<Attribute>(std::move(attribute)));
+  columns[column] = changed.back().get();
+}
+
+void LevelGeometry::replace_mesh(std::unique_ptr<Mesh> other) {
+  own_mesh = std::move(other);
+  mesh = own_mesh.get();
+}
+
 Result<LevelGeometry> match_level(const Mesh& mesh, const MeshSource& source) {
-  LevelGeometry level{&mesh, {}, {}};
+  LevelGeometry level;
+  level.mesh = &mesh;
   for (const MeshColumn& column : source.columns) {
-    const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
-                                    [&](const Attribute& a) { return belongs_to(a, column); });
-    if (found == mesh.attributes.end())
+    const auto find = [&](auto&& fits) {
+      const auto found = std::find_if(mesh.attributes.begin(), mesh.attributes.end(), [&](const Attribute& a) {
+        return fits(a, column.layout) && belongs_to(a, column);
+      });
+      return found == mesh.attributes.end() ? nullptr : &*found;
+    };
+    level.columns.push_back(find(has_type_of));
+    if (level.columns.back() != nullptr) continue;
+    const Attribute* const floats = find(fits_after_rounding);
+    if (floats == nullptr)
       return fail(ErrorCode::InvalidArgument,
                   text("mesh ", source.mesh, ": a level lacks the attribute ", column.layout.name));
-    level.columns.push_back(&*found);
+    level.replace_column(level.columns.size() - 1, as_stored(*floats, column.layout));
   }
   for (Index face = 0; face < mesh.face_count(); ++face)
     if (mesh.material_of(face) >= source.primitives.size() || !source.primitives[mesh.material_of(face)].replaced)
@@ -283,10 +337,11 @@ std::vector<const Attribute*> attributes_of(const LevelGeometry& level, const So
 }
 
 Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, const MeshSource& source,
-                                 const LevelGeometry& level, const EncodedLevel& encoded, const AssetOptions& options) {
+                                 const LevelGeometry& level, const QuantizationGrids& grids,
+                                 const EncodedLevel& encoded, const AssetOptions& options) {
   WrittenLevel written;
   const std::uint64_t begin = (builder.binary_bytes() + 3) / 4 * 4;
-  GeometryWriter writer(builder, source, level, options, written);
+  GeometryWriter writer(builder, source, level, grids, options, written);
   const std::map<Index, PrimitiveGeometry> geometry = writer.write(encoded);
   if (options.keep_decoded) {
     LODESTONE_TRY(written.decoded, writer.decoded());

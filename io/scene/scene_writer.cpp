@@ -11,11 +11,13 @@
 #include <lodestone/core/detail/cancelled.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/core/parallel.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/screen_coverage.h>
 
 #include "gltf/glb_builder.h"
 #include "scene/draco_levels.h"
+#include "scene/meshopt_accessors.h"
 #include "scene/scene_buffers.h"
 #include "scene/scene_channels.h"
 #include "scene/scene_extensions.h"
@@ -50,15 +52,15 @@ struct BitsOption {
 };
 
 Result<void> check_options(const AssetOptions& options) {
-  if (!options.draco) return {};
-  for (const BitsOption& bits : {BitsOption{"draco_position_bits", options.draco_position_bits.value_or(1), 1},
-                                 BitsOption{"draco_normal_bits", options.draco_normal_bits, kMinNormalBits},
-                                 BitsOption{"draco_texcoord_bits", options.draco_texcoord_bits, 1},
-                                 BitsOption{"draco_generic_bits", options.draco_generic_bits, 1}})
+  if (options.compression == Compression::None) return {};
+  for (const BitsOption& bits :
+       {BitsOption{"position_bits", options.position_bits.value_or(1), 1},
+        BitsOption{"normal_bits", options.normal_bits, kMinNormalBits},
+        BitsOption{"texcoord_bits", options.texcoord_bits, 1}, BitsOption{"generic_bits", options.generic_bits, 1}})
     if (bits.value < bits.least || bits.value > kMaxQuantizationBits)
       return fail(ErrorCode::InvalidArgument,
                   text(bits.name, " is ", bits.value, ", not in ", bits.least, " to ", kMaxQuantizationBits));
-  if (const auto& grid = options.draco_position_grid; grid && !(grid->step >= kLeastStep && grid->step <= kMostStep))
+  if (const auto& grid = options.position_grid; grid && !(grid->step >= kLeastStep && grid->step <= kMostStep))
     return fail(ErrorCode::InvalidArgument,
                 text("the grid's step is ", grid->step, ", not in ", kLeastStep, " to ", kMostStep));
   if (options.draco_compression_level < 0 || options.draco_compression_level > 10)
@@ -173,14 +175,22 @@ class SceneWriter {
       }
     }
     LODESTONE_TRY(grids_, fit_grids(scene_, geometry_, options_));
+    if (options_.compression == Compression::Meshopt) round_levels();
     LODESTONE_CHECK(encode_levels_side_by_side());
-    for (std::size_t mesh = 0; options_.draco && mesh < meshes_.size(); ++mesh) {
+    for (std::size_t mesh = 0; options_.compression != Compression::None && mesh < meshes_.size(); ++mesh) {
       const QuantizationGrid& grid = grids_[mesh].position;
       layout_.quantisation_error =
           std::max(layout_.quantisation_error, grid.point_error() * scene_.meshes()[mesh].scale);
       layout_.position_bits = std::max(layout_.position_bits, grid.bits);
     }
     return {};
+  }
+
+  void round_levels() {
+    for_each_in_parallel(meshes_.size() * range_.count, [&](std::size_t i) {
+      const std::size_t mesh = i / range_.count;
+      round_level(impl_.sources[mesh], grids_[mesh], geometry_[mesh][i % range_.count]);
+    });
   }
 
   Result<void> encode_levels_side_by_side() {
@@ -216,7 +226,7 @@ class SceneWriter {
       } else {
         const MeshSource& source = impl_.sources[mesh];
         LODESTONE_TRY(written, write_level(builder_, impl_.document.list("meshes")[source.mesh], source,
-                                           geometry_[mesh][level], encoded_[mesh][level], options_));
+                                           geometry_[mesh][level], grids_[mesh], encoded_[mesh][level], options_));
         encoded_[mesh][level] = {};
         for (const std::string& note : written.notes) add_note(note);
       }
@@ -245,8 +255,8 @@ class SceneWriter {
         counts += text(counts.empty() ? "" : ", ", collapsed_[level], " of ", layout_.levels[level].face_count,
                        " in level ", range_.first + level);
     if (counts.empty()) return;
-    add_note(text("faces collapse on Draco's grid, which moves vertices by up to ", layout_.quantisation_error, ": ",
-                  counts));
+    add_note(
+        text("faces collapse on the grid, which moves vertices by up to ", layout_.quantisation_error, ": ", counts));
   }
 
   void list_levels() {
@@ -416,7 +426,7 @@ class SceneWriter {
 
   Json numbers_of(std::size_t mesh, std::size_t level) const {
     std::optional<double> position_step;
-    if (options_.draco) position_step = grids_[mesh].position.step();
+    if (options_.compression != Compression::None) position_step = grids_[mesh].position.step();
     return level_numbers(levels_[mesh][level], written_[mesh][level], scene_.meshes()[mesh],
                          impl_.sources[mesh].nodes.size(), position_step);
   }

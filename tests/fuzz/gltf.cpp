@@ -12,14 +12,14 @@
 
 std::vector<lodestone::test::Bytes> lodestone::test::fuzz_seeds() {
   std::vector<Bytes> seeds;
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     LeveledMesh mesh;
     mesh.levels.resize(2);
     mesh.levels[0].mesh = assemble(seam_cube(2))->mesh;
     mesh.levels[1].mesh = assemble(seam_cube(1))->mesh;
     const auto scene = Scene::from_mesh({mesh.levels[0].mesh, {}, {}, {}, {}}, "cube");
     AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     const auto asset = encode_scene(*scene, std::span(&mesh, 1), options);
     if (!asset) continue;
     seeds.push_back(bytes_of(asset->glb));
@@ -43,9 +43,10 @@ void encode_again(const lodestone::Result<lodestone::Scene>& scene) {
     coarse.corner_wedge.resize(coarse.face_count() / 2 * 3);
     coarse.face_material.resize(std::min(coarse.face_material.size(), coarse.face_count()));
   }
-  for (const bool draco : {false, true}) {
+  for (const lodestone::Compression compression :
+       {lodestone::Compression::None, lodestone::Compression::Draco, lodestone::Compression::Meshopt}) {
     lodestone::AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     const auto asset = encode_scene(*scene, meshes, options);
     if (!asset && asset.error().message.empty()) std::abort();
   }

@@ -103,7 +103,7 @@ std::map<std::array<float, 3>, std::vector<float>> values_at_places(const Mesh& 
 
 TEST_CASE("plain levels read back bit for bit, with their numbers") {
   AssetOptions options;
-  options.draco = false;
+  options.compression = Compression::None;
   const auto levels = sphere_levels();
   const EncodedAsset encoding = encoded(levels, options, 99);
   const auto read = decoded(encoding);
@@ -115,7 +115,7 @@ TEST_CASE("plain levels read back bit for bit, with their numbers") {
     CHECK(read[i].maximum_deviation == levels[i].deviation.maximum());
     CHECK(read[i].mean_deviation == levels[i].deviation.backward.mean);
     CHECK(read[i].curvature_error == levels[i].curvature_error);
-    CHECK_FALSE(read[i].draco);
+    CHECK_FALSE(read[i].compression == Compression::Draco);
   }
   const auto streams = Asset::read_bytes(encoding.glb).value().streams().value();
   REQUIRE(streams.size() == 1);
@@ -123,16 +123,18 @@ TEST_CASE("plain levels read back bit for bit, with their numbers") {
   CHECK(streams[0].bytes == std::vector<std::byte>(99, std::byte{7}));
 }
 
-TEST_CASE("draco levels keep their faces and move no vertex farther than half a step") {
+TEST_CASE("compressed levels keep their faces and move no vertex farther than half a step") {
+  const Compression compression = GENERATE(Compression::Draco, Compression::Meshopt);
   for (const int bits : {8, 14, 20}) {
     AssetOptions options;
-    options.draco_position_bits = bits;
+    options.compression = compression;
+    options.position_bits = bits;
     const auto levels = sphere_levels();
     const auto read = decoded(encoded(levels, options));
     REQUIRE(read.size() == 3);
     const double step = 2.0 / (std::pow(2.0, bits) - 1);
     for (std::size_t i = 0; i < 3; ++i) {
-      CHECK(read[i].draco);
+      CHECK(read[i].compression == compression);
       CHECK(read[i].mesh.face_count() == levels[i].mesh.face_count());
       CHECK(farthest_vertex(levels[i].mesh, read[i].mesh) <= 0.51 * step * std::sqrt(3.0) + 1e-6);
     }
@@ -140,8 +142,10 @@ TEST_CASE("draco levels keep their faces and move no vertex farther than half a 
 }
 
 TEST_CASE("levels share one grid: a vertex of two levels is at one place") {
+  const Compression compression = GENERATE(Compression::Draco, Compression::Meshopt);
   AssetOptions options;
-  options.draco_position_bits = 10;
+  options.compression = compression;
+  options.position_bits = 10;
   const auto read = decoded(encoded(sphere_levels(), options));
   // A subdivided icosphere keeps the vertices of the coarser one.
   CHECK(farthest_vertex(read[2].mesh, read[0].mesh) == 0);
@@ -151,9 +155,9 @@ TEST_CASE("attributes and materials survive, plain exactly, draco in number") {
   for (const TriangleSoup& soup : {seam_cube(3), seam_sphere(8, 6), two_material_grid(4)}) {
     std::vector<AssetLevel> levels(1);
     levels[0].mesh = numbered_by_primitive(mesh_of(soup));
-    for (const bool draco : {false, true}) {
+    for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
       AssetOptions options;
-      options.draco = draco;
+      options.compression = compression;
       const auto read = decoded(encoded(levels, options));
       const Mesh& mesh = read.at(0).mesh;
       CHECK(mesh.face_count() == levels[0].mesh.face_count());
@@ -165,7 +169,8 @@ TEST_CASE("attributes and materials survive, plain exactly, draco in number") {
   }
 }
 
-TEST_CASE("draco holds shapes of any size") {
+TEST_CASE("compression holds shapes of any size") {
+  const Compression compression = GENERATE(Compression::Draco, Compression::Meshopt);
   for (const double size : {1e-30, 1e-9, 1e-6, 1e-3, 1e4, 1e9, 1e30}) {
     TriangleSoup soup = seam_sphere(8, 6);
     for (Vec3f& p : soup.positions)
@@ -173,10 +178,12 @@ TEST_CASE("draco holds shapes of any size") {
     std::vector<AssetLevel> levels(1);
     levels[0].mesh = mesh_of(soup);
     CAPTURE(size);
-    const EncodedAsset encoding = encoded(levels, {});
+    AssetOptions options;
+    options.compression = compression;
+    const EncodedAsset encoding = encoded(levels, options);
     const auto read = decoded(encoding);
     CHECK(encoding.layout.notes.empty());
-    CHECK(read[0].draco);
+    CHECK(read[0].compression == compression);
     CHECK(read[0].mesh.face_count() == levels[0].mesh.face_count());
     CHECK(farthest_vertex(levels[0].mesh, read[0].mesh, 1e9 * size) <= 1.001 * encoding.layout.quantisation_error);
     CHECK(encoding.layout.quantisation_error < 1e-4 * 2 * size);
@@ -208,29 +215,32 @@ TEST_CASE("draco keeps thin, long and small shapes from collapsing, and says wha
     CHECK(encoding.layout.quantisation_error < 3e-5);
     CHECK(decoded(encoding)[0].mesh.face_count() == levels[0].mesh.face_count());
     AssetOptions coarse;
-    coarse.draco_position_bits = 10;
+    coarse.position_bits = 10;
     const EncodedAsset collapsed = encoded(levels, coarse);
     REQUIRE(collapsed.layout.notes.size() == 1);
-    CHECK_THAT(collapsed.layout.notes[0], contains("faces collapse on Draco's grid"));
+    CHECK_THAT(collapsed.layout.notes[0], contains("faces collapse on the grid"));
     CHECK(collapsed.layout.levels[0].face_count == levels[0].mesh.face_count());
     CHECK(decoded(collapsed)[0].mesh.face_count() < levels[0].mesh.face_count());
   }
 }
 
-TEST_CASE("draco moves no vertex farther than the options allow") {
+TEST_CASE("compression moves no vertex farther than the options allow") {
+  const Compression compression = GENERATE(Compression::Draco, Compression::Meshopt);
   std::vector<AssetLevel> levels(1);
   levels[0].mesh = mesh_of(seam_sphere(16, 12));
   for (const double most : {1e-2, 1e-5, 1e-7, 1e-9, 0.0}) {
     AssetOptions options;
-    options.draco_position_error = most;
+    options.compression = compression;
+    options.position_error = most;
     const EncodedAsset encoding = encoded(levels, options);
     CHECK(encoding.layout.quantisation_error <= most);
-    CHECK(decoded(encoding)[0].draco);
+    CHECK(decoded(encoding)[0].compression == compression);
     CHECK(farthest_vertex(levels[0].mesh, decoded(encoding)[0].mesh) <= most);
   }
 }
 
-TEST_CASE("draco keeps whatever is data exactly, and texture coordinates by the texture's width") {
+TEST_CASE("compression keeps whatever is data exactly, and texture coordinates by the texture's width") {
+  const Compression compression = GENERATE(Compression::Draco, Compression::Meshopt);
   Random random(5);
   const Mesh bare = mesh_of(grid(9, 0.1, 1));
   const auto with_floats = [&](const std::string& name, std::uint8_t width, auto value) {
@@ -243,7 +253,8 @@ TEST_CASE("draco keeps whatever is data exactly, and texture coordinates by the 
     return levels;
   };
   AssetOptions options;
-  options.draco_position_error = 0;  // so that places tell which value is which
+  options.compression = compression;
+  options.position_error = 0;  // so that places tell which value is which
   const auto farthest_value = [&](const std::vector<AssetLevel>& levels) {
     const EncodedAsset encoding = encoded(levels, options);
     CHECK(encoding.layout.notes.empty());
@@ -282,10 +293,10 @@ TEST_CASE("what draco cannot predict it encodes in another way") {
   std::vector<AssetLevel> levels(1);
   levels[0].mesh = mesh_of(seam_sphere(12, 9));
   AssetOptions options;
-  options.draco_position_bits = options.draco_texcoord_bits = 24;
+  options.position_bits = options.texcoord_bits = 24;
   const EncodedAsset encoding = encoded(levels, options);
   CHECK(encoding.layout.notes.empty());
-  CHECK(decoded(encoding)[0].draco);
+  CHECK(decoded(encoding)[0].compression == Compression::Draco);
   CHECK(decoded(encoding)[0].mesh.face_count() == levels[0].mesh.face_count());
   CHECK(farthest_vertex(levels[0].mesh, decoded(encoding)[0].mesh) < 1e-5);
 }
@@ -298,22 +309,24 @@ TEST_CASE("however fine a grid is, draco takes no more memory than the mesh is w
     for (const int level : {7, 10}) {
       AssetOptions options;
       options.draco_compression_level = level;
-      options.draco_position_bits = options.draco_normal_bits = options.draco_texcoord_bits = bits;
+      options.position_bits = options.normal_bits = options.texcoord_bits = bits;
       const EncodedAsset encoding = encoded(levels, options);
       INFO("bits " << bits << ", level " << level);
       CHECK(encoding.layout.notes.empty());
       const auto read = decoded(encoding);
-      CHECK(read[0].draco);
+      CHECK(read[0].compression == Compression::Draco);
       CHECK(read[0].mesh.face_count() == levels[0].mesh.face_count());
       CHECK(farthest_vertex(levels[0].mesh, read[0].mesh) < 1e-6);
     }
   AssetOptions options;
-  options.draco_position_grid = PositionGrid{{}, std::ldexp(1.0F, -28)};
+  options.position_grid = PositionGrid{{}, std::ldexp(1.0F, -28)};
   CHECK(farthest_vertex(levels[0].mesh, decoded(encoded(levels, options))[0].mesh) < 1e-6);
   if (!kReduced) CHECK(peak_megabytes() - before < 256);  // a sanitizer has its own limit on allocations
 }
 
-TEST_CASE("integer attributes pass draco exactly") {
+TEST_CASE("integer attributes pass compression exactly") {
+  AssetOptions options;
+  options.compression = GENERATE(Compression::Draco, Compression::Meshopt);
   std::vector<AssetLevel> levels(1);
   TriangleSoup soup = grid(4, 0.1, 1);
   Attribute color{"COLOR_0", ComponentType::UInt8, 4, true, {}};
@@ -324,7 +337,7 @@ TEST_CASE("integer attributes pass draco exactly") {
   }
   soup.attributes = {color, joints};
   levels[0].mesh = mesh_of(soup);
-  TriangleSoup original = to_soup(levels[0].mesh), read = to_soup(decoded(encoded(levels, {})).at(0).mesh);
+  TriangleSoup original = to_soup(levels[0].mesh), read = to_soup(decoded(encoded(levels, options)).at(0).mesh);
   const auto values = [](const TriangleSoup& s, std::size_t a) {
     std::multiset<std::vector<std::byte>> all;
     const std::size_t size = s.attributes.at(a).element_bytes();
@@ -337,9 +350,9 @@ TEST_CASE("integer attributes pass draco exactly") {
 }
 
 TEST_CASE("the binary chunk holds the coarsest level first, each in one piece, and the stream last") {
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     const EncodedAsset asset = encoded(sphere_levels(), options, 1000);
     const auto& levels = asset.layout.levels;
     REQUIRE(levels.size() == 3);
@@ -376,9 +389,9 @@ TEST_CASE("readers without levels of detail see the finest level") {
 }
 
 TEST_CASE("assets are the same bytes every time") {
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     CHECK(encoded(sphere_levels(), options, 5).glb == encoded(sphere_levels(), options, 5).glb);
   }
 }
@@ -386,9 +399,9 @@ TEST_CASE("assets are the same bytes every time") {
 TEST_CASE("levels without faces have no mesh and are no error") {
   std::vector<AssetLevel> levels(2);
   levels[0].mesh = mesh_of(tetrahedron());
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     const auto read = decoded(encoded(levels, options, 3));
     REQUIRE(read.size() == 2);
     CHECK(read[0].mesh.face_count() == 4);
@@ -400,7 +413,7 @@ TEST_CASE("levels without faces have no mesh and are no error") {
 TEST_CASE("an ordinary gltf is an asset of one level, without a stream") {
   const ScratchDirectory scratch;
   AssetOptions options;
-  options.draco = false;
+  options.compression = Compression::None;
   const auto levels = sphere_levels();
   REQUIRE(write_file(scratch / "one.glb", encoded(std::span(levels).first(1), options).glb));
   const Asset asset = Asset::read(scratch / "one.glb").value();
@@ -411,11 +424,11 @@ TEST_CASE("an ordinary gltf is an asset of one level, without a stream") {
 
 TEST_CASE("options out of range are named") {
   AssetOptions options;
-  options.draco_position_bits = 31;
+  options.position_bits = 31;
   const auto asset = encode(sphere_levels(), options);
   REQUIRE_FALSE(asset);
   CHECK(asset.error().code == ErrorCode::InvalidArgument);
-  CHECK_THAT(asset.error().message, contains("draco_position_bits is 31"));
+  CHECK_THAT(asset.error().message, contains("position_bits is 31"));
   const Scene scene = Scene::from_mesh({mesh_of(tetrahedron()), {}, {}, {}, {}}, "").value();
   CHECK_FALSE(encode_scene(scene, {}, {}));
   CHECK_FALSE(encode_scene(scene, std::vector<LeveledMesh>(1), {}));

@@ -42,7 +42,7 @@ std::vector<std::string> faces_of(const Mesh& mesh) {
 
 Mesh surface_in_file(const Scene& scene, const std::vector<LeveledMesh>& meshes, std::size_t level) {
   AssetOptions options;
-  options.draco = false;
+  options.compression = Compression::None;
   return read_mesh_bytes(encode_scene_level(scene, meshes, level, options).value().glb, "glb").value().mesh;
 }
 
@@ -53,7 +53,7 @@ void check_levels(const std::filesystem::path& path) {
   options.targets = ratio_targets(0.3, 2);
   options.placement = Placement::Subset;
   options.keep_levels = true;
-  options.storage.draco = false;  // what Draco does to normals, a second file would mend
+  options.storage.compression = Compression::None;  // what Draco does to normals, a second file would mend
   const BuildResult built = build_asset(scene, options).value();
   REQUIRE(built.decoded.size() == scene.meshes().size());
   for (std::size_t level = 0; level < built.levels.size(); ++level) {

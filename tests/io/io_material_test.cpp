@@ -47,7 +47,7 @@ struct Folder {
     for (std::size_t i = 0; i < levels.size(); ++i)
       levels[i].levels.resize(1), levels[i].levels[0].mesh = scene.meshes()[i].mesh;
     AssetOptions options;
-    options.draco = false;
+    options.compression = Compression::None;
     return GltfFile::from_glb(encode_scene_level(scene, levels, 0, options).value().glb);
   }
 };

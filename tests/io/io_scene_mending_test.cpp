@@ -76,7 +76,7 @@ std::map<Bytes, Bytes> by_position(const GltfFile& file, const std::string& node
 }
 
 /// Builds without a simplifier: the grid, again the grid, and two levels of half its faces.
-GltfFile encoded(GltfMaker& maker, bool draco = false) {
+GltfFile encoded(GltfMaker& maker, Compression compression = Compression::None) {
   const auto scene = Scene::read_bytes(maker.glb(), "glb");
   REQUIRE(scene);
   LeveledMesh leveled;
@@ -86,7 +86,7 @@ GltfFile encoded(GltfMaker& maker, bool draco = false) {
     corners.resize(corners.size() / 6 * 3);
   }
   AssetOptions options;
-  options.draco = draco;
+  options.compression = compression;
   const auto asset = encode_scene(*scene, std::span(&leveled, 1), options);
   REQUIRE(asset);
   return GltfFile::from_glb(asset->glb);

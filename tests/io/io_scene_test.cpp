@@ -37,7 +37,7 @@ std::vector<LeveledMesh> halved(const Scene& scene, std::size_t level_count = 2)
 
 AssetOptions plain() {
   AssetOptions options;
-  options.draco = false;
+  options.compression = Compression::None;
   return options;
 }
 
@@ -242,9 +242,9 @@ TEST_CASE("every scene of the models keeps all but its geometry, and its geometr
     const Scene scene = checked(Scene::read(path));
     const std::vector<LeveledMesh> levels = halved(scene);
     const GltfFile in = GltfFile::read(path);
-    for (const bool draco : {false, true}) {
+    for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
       AssetOptions options;
-      options.draco = draco;
+      options.compression = compression;
       const EncodedAsset asset = checked(encode_scene(scene, levels, options));
       check_kept(in, GltfFile::from_glb(asset.glb));
       const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
@@ -257,7 +257,7 @@ TEST_CASE("every scene of the models keeps all but its geometry, and its geometr
         CHECK(again.meshes()[i].instance_count == scene.meshes()[i].instance_count);
         CHECK(again.meshes()[i].nodes == scene.meshes()[i].nodes);
         CHECK(again.meshes()[i].materials == scene.meshes()[i].materials);
-        if (!draco) CHECK(triangle_set(before) == triangle_set(after));
+        if (compression == Compression::None) CHECK(triangle_set(before) == triangle_set(after));
       }
     }
   }
@@ -296,9 +296,9 @@ TEST_CASE("primitives that touch are one mesh, and come apart again with their o
   CHECK(std::set<Index>(mesh.mesh.face_material.begin(), mesh.mesh.face_material.end()) == std::set<Index>{0, 1});
   CHECK(mesh.materials == std::vector<std::string>{"red", ""});
 
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     const GltfFile out = encoded(scene, options);
     const GltfJson& written = out.json["meshes"][0]["primitives"];
     REQUIRE(written.size() == 2);
@@ -343,6 +343,7 @@ TEST_CASE("instances share their levels' data, and the largest scale counts") {
 }
 
 TEST_CASE("levels are measured as clients decode them, attributes and all") {
+  const Compression compression = GENERATE(Compression::Draco, Compression::Meshopt);
   constexpr std::size_t kSamples = 1000;
   DeviationOptions few;
   few.sample_count = kSamples;
@@ -352,7 +353,8 @@ TEST_CASE("levels are measured as clients decode them, attributes and all") {
     if (assembled->mesh.face_count() == 0) continue;
     const Scene scene = checked(Scene::from_mesh({assembled->mesh, {}, {}, {}, {}}, "shape"));
     AssetOptions options;
-    options.draco_position_bits = 12;
+    options.compression = compression;
+    options.position_bits = 12;
     options.keep_decoded = true;
     const std::vector<LeveledMesh> levels = halved(scene);
     EncodedGeometry geometry = checked(encode_geometry(scene, levels, options));
@@ -369,7 +371,7 @@ TEST_CASE("levels are measured as clients decode them, attributes and all") {
       for (const AttributeDeviation& a : measure_attributes(measured[i].mesh, decoded, kSamples)) CHECK(a.mean < 1e-6);
       CHECK(read_back[i].maximum_deviation == 0.25);
     }
-    options.draco = false;
+    options.compression = Compression::None;
     EncodedGeometry exact = checked(encode_geometry(scene, levels, options));
     CHECK(exact.levels()[0][0].mesh.positions == scene.meshes()[0].mesh.positions);
   }
@@ -380,7 +382,8 @@ TEST_CASE("what quantisation leaves no area is measured all the same") {
   GltfMaker maker = strips(1, 4);
   const Scene scene = read(maker);
   AssetOptions options;
-  options.draco_position_bits = 1;
+  options.compression = GENERATE(Compression::Draco, Compression::Meshopt);
+  options.position_bits = 1;
   Mesh small = scene.meshes()[0].mesh;
   for (Vec3f& p : small.positions) p = {p.x * 1e-3F, p.y * 1e-3F, p.z * 1e-3F};
   std::vector<LeveledMesh> meshes = halved(scene);
@@ -395,9 +398,9 @@ TEST_CASE("what quantisation leaves no area is measured all the same") {
 TEST_CASE("levels that repeat the one before share its data, in meshes of their own") {
   GltfMaker maker = strips(1, 4);
   const Scene scene = read(maker);
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     const GltfFile out = encoded(scene, options, 4);
     CHECK(out.json["meshes"].size() == 4);
     const auto primitives = [&](const char* name) {
@@ -520,10 +523,10 @@ TEST_CASE("morph targets, sparse ones too, stay with their vertices") {
     if (i == 7) corner = {3, 1, 7, 4, 5, 6};
     expected.insert(corner);
   }
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     AssetOptions options;
-    options.draco = draco;
-    options.draco_position_bits = 8;  // steps of 4/255, which is why positions are rounded below
+    options.compression = compression;
+    options.position_bits = 8;  // steps of 4/255, which is why positions are rounded below
     const EncodedAsset asset = checked(encode_scene(scene, halved(scene), options));
     const GltfFile out = GltfFile::from_glb(asset.glb);
     const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());
@@ -538,13 +541,13 @@ TEST_CASE("morph targets, sparse ones too, stay with their vertices") {
       corners.insert({std::round(p.x), std::round(p.y), first.z, second.x, second.y, second.z});
     }
     CHECK(corners == expected);
-    if (!draco) {
+    if (compression == Compression::None) {
       const ByteVector bytes = out.accessor_bytes(out.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]);
       std::vector<float> positions(bytes.size() / sizeof(float));
       std::memcpy(positions.data(), bytes.data(), bytes.size());
       CHECK(morphed_corners(out, out.json["meshes"][0]["primitives"][0], positions) == expected);
     }
-    CHECK(out.json["meshes"][0]["primitives"][0].contains("extensions") == draco);
+    CHECK(out.json["meshes"][0]["primitives"][0].contains("extensions") == (compression == Compression::Draco));
     CHECK(out.json["meshes"][1]["weights"] == maker.json["meshes"][0]["weights"]);
     CHECK((*lod_node(out, "node_LOD1"))["weights"] == maker.json["nodes"][0]["weights"]);
     check_nodes(GltfFile::from_glb(maker.glb()), out);
@@ -747,9 +750,9 @@ TEST_CASE("unknown extensions and extras stay, and what they may name keeps its 
   maker.add("odd", {{"thing", 1}});
   const GltfFile in = GltfFile::from_glb(maker.glb());
   const Scene scene = read(maker);
-  for (const bool draco : {false, true}) {
+  for (const Compression compression : {Compression::None, Compression::Draco, Compression::Meshopt}) {
     AssetOptions options;
-    options.draco = draco;
+    options.compression = compression;
     const GltfFile out = encoded(scene, options);
     check_kept(in, out);
     check_equal(in.json, out.json, "odd");
@@ -850,7 +853,7 @@ TEST_CASE("meshes of equal scale share one grid, so that equal places decode to 
   maker.add("nodes", {{"name", "second"}, {"mesh", 1}});
   maker.json["scenes"][0]["nodes"] = {0, 1};
   AssetOptions options;
-  options.draco_position_bits = 9;
+  options.position_bits = 9;
   const Scene scene = read(maker);
   const EncodedAsset asset = checked(encode_scene(scene, halved(scene), options));
   const Scene again = checked(checked(Asset::read_bytes(asset.glb)).scene());

@@ -14,7 +14,7 @@ namespace {
 
 AssetOptions plain() {
   AssetOptions options;
-  options.draco = false;
+  options.compression = Compression::None;
   return options;
 }
 

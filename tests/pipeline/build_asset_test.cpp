@@ -177,7 +177,7 @@ TEST_CASE("each effort makes the levels asked for, with bounds that hold") {
     options.effort = effort;
     options.placement = Placement::Subset;
     options.keep_levels = true;
-    options.storage.draco = false;
+    options.storage.compression = Compression::None;
     const auto built = build_asset(scene, options);
     REQUIRE(built);
     INFO("effort " << effort);

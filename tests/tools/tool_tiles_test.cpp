@@ -93,7 +93,8 @@ TEST_CASE("tiles built one by one agree on their border in every level, plain an
     Options options;
   };
   for (const Case& c : {Case{{0, 0, 0}, 0, {"--no-draco"}}, Case{{-0.75F, -0.25F, 4}, 0.001F, {"--grid-step", "0.001"}},
-                        Case{{-6000, 900, 0}, 0.01F, {"--grid-step", "0.01", "--grid-origin=-3,0.2,1e3"}}}) {
+                        Case{{-6000, 900, 0}, 0.01F, {"--grid-step", "0.01", "--grid-origin=-3,0.2,1e3"}},
+                        Case{{-0.75F, -0.25F, 4}, 0.001F, {"--grid-step", "0.001", "--compress", "meshopt"}}}) {
     REQUIRE(write_file(left, tile(soup, true, 0.5F, c.shift)));
     REQUIRE(write_file(right, tile(soup, false, 0.5F, c.shift)));
     check_fit(left, right, 0.5F + c.shift.x, c.step, kSquares + 1, c.options);
@@ -114,6 +115,11 @@ TEST_CASE("a grid that is none, or too fine for where positions lie, is refused 
   };
   CHECK_THAT(refusal({"--grid-step", "1e-10"}),
              contains("steps of 1e-10 from the grid's origin, more than 5.36871e+08"));
+  CHECK_THAT(refusal({"--grid-step", "1e-8", "--compress", "meshopt"}),
+             contains("steps of 1e-08 from the grid's origin, more than 4.1943e+06"));
+  CHECK_THAT(refusal({"--grid-step", "1", "--grid-origin=1,0,0", "--compress", "meshopt"}), contains("--grid-origin"));
+  CHECK_THAT(refusal({"--compress", "zip"}), contains("--compress"));
+  CHECK_THAT(refusal({"--compress", "meshopt", "--no-draco"}), contains("--no-draco"));
   CHECK_THAT(refusal({"--grid-step", "0"}), contains("--grid-step"));
   CHECK_THAT(refusal({"--grid-step", "1e-42"}), contains("the grid's step is"));
   CHECK_THAT(refusal({"--grid-step", "1", "--qp", "12"}), contains("--qp"));

@@ -247,13 +247,13 @@ TEST_CASE("unknown options are all named, in the order typed, with what may be m
 TEST_CASE("what other programs call it is answered with our word") {
   const Workplace place;
   check_refused({"-i", "ball.obj", "-o", "o.glb", "-si", "0.5", "-se", "0.01", "-cc"},
-                {"'-si'", "--ratio", "'-se'", "--error", "'-cc'", "--no-draco"});
+                {"'-si'", "--ratio", "'-se'", "--error", "'-cc'", "--compress meshopt"});
   check_refused({"build", "ball.obj", "o.glb", "-slb", "-noq", "-vp", "12", "-kn"},
-                {"--lock-border", "--no-draco", "--qp", "stay"});
+                {"--lock-border", "--compress none", "--qp", "stay"});
   check_refused({"simplify", "ball.obj", "o.glb", "--ratio", "0.5"}, {"'simplify'", "is build here"});
   check_refused({"optimize", "ball.obj", "o.glb"}, {"is build here"});
-  check_refused({"build", "ball.obj", "o.glb", "--simplify-error", "0.001", "--compress", "draco"},
-                {"--error", "--no-draco"});
+  check_refused({"build", "ball.obj", "o.glb", "--simplify-error", "0.001", "--compress", "draco"}, {"--error"});
+  check_refused({"build", "ball.obj", "o.glb", "--draco"}, {"--compress"});
   check_refused({"build", "ball.obj", "o.glb", "--triangles", "40"}, {"--faces N"});
 }
 

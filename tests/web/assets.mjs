@@ -15,14 +15,17 @@ const demoModel = join(repository, 'demo', 'suzi.glb');
 const large = ['paper/stanford-bunny.obj', 'paper/fandisk.obj'];
 const textured = 'mesh/spot/spot_triangulated.obj';
 const inSeveralFiles = ['gltf/Lantern/Lantern_nobasecolor.gltf', 'skin-morph/Knight.glb'];
+const severalKinds = ['gltf/FlightHelmet/FlightHelmet.gltf', 'skin-morph/Knight.glb', 'skin-morph/MorphStressTest.gltf'];
 const withMaterial = 'field/cube with material.obj';
-const noDraco = '--no-draco';
+const plain = ['--compress', 'none'];
+const packed = ['--compress', 'meshopt'];
 
 function variants(input, kind, output, flagSets) {
   const stem = basename(input, extname(input));
   return flagSets.map((flags) => {
-    const name = [stem, ...flags].join('');
-    return { name, stem, kind, input, flags, draco: !flags.includes(noDraco), path: join(output, `${name}.glb`) };
+    const compression = flags[flags.indexOf('--compress') + 1] ?? 'draco';
+    const name = flags.length > 0 ? `${stem}-${compression}` : stem;
+    return { name, stem, kind, input, flags, compression, path: join(output, `${name}.glb`) };
   });
 }
 
@@ -46,13 +49,16 @@ const madeModels = (output) =>
 export function planAssets({ models, output }) {
   const found = (names) => names.map((name) => join(models, name)).filter(existsSync);
   const made = Object.keys(madeModels(output));
-  const scenes = [...made, ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], [noDraco]]));
+  const scenes = [...made, ...sceneModels(models)].flatMap((input) => variants(input, 'scene', output, [[], plain]));
+  const packedScenes = [...made, ...found(severalKinds)].flatMap((input) => variants(input, 'scene', output, [packed]));
   return [
-    ...[demoModel, ...found([textured])].flatMap((input) => variants(input, 'mesh', output, [[], [noDraco]])),
+    ...[demoModel, ...found([textured])].flatMap((input) => variants(input, 'mesh', output, [[], plain, packed])),
     ...found(large).flatMap((input) => variants(input, 'mesh', output, [[]])),
     ...scenes,
+    ...packedScenes,
     ...scenes.filter(({ input }) => [made[0], ...found(inSeveralFiles)].includes(input)).map(asSeveralFiles),
-    ...found([withMaterial]).flatMap((input) => variants(input, 'scene', output, [[noDraco]])).map(asSeveralFiles),
+    ...found([withMaterial]).flatMap((input) => variants(input, 'scene', output, [plain])).map(asSeveralFiles),
+    ...packedScenes.slice(0, 1).map(asSeveralFiles),
   ];
 }
 

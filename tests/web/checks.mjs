@@ -10,7 +10,7 @@ const severityOfInfos = 2; // errors are 0, warnings 1
 
 const triangles = (levels) => levels.map((level) => level.triangles);
 
-/** Khronos' validator: no error and no warning. It does not look inside Draco; the clients do. */
+/** Khronos' validator: no error and no warning. It does not look inside Draco or meshopt; the clients do. */
 export async function validates(asset) {
   const report = await validator.validateBytes(new Uint8Array(await readFile(asset.path)), { maxIssues: 100 });
   const { numErrors, numWarnings, numInfos, messages } = report.issues;
@@ -35,7 +35,8 @@ const comesWithLevels = new Set(['MESH_PRIMITIVE_GENERATED_TANGENT_SPACE', 'MESH
   'MESH_PRIMITIVE_TOO_FEW_TEXCOORDS', 'MESH_PRIMITIVE_TANGENT_WITHOUT_NORMAL', 'UNUSED_MESH_TANGENT',
   'INCOMPLETE_EXTENSION_SUPPORT', 'UNUSED_OBJECT']);
 
-const unknownExtensions = ['MSFT_lod', 'KHR_draco_mesh_compression', 'LODESTONE_removal_stream'];
+const unknownExtensions = ['MSFT_lod', 'KHR_draco_mesh_compression', 'EXT_meshopt_compression',
+  'LODESTONE_removal_stream'];
 
 /** Returns the pointers of what only extensions use that the validator does not know: it takes them for unused. */
 function usedByExtensions(gltf) {
@@ -114,8 +115,8 @@ export async function extrasAgree(asset) {
 async function openThree(site, asset, job) {
   return withPage(site.browser, `${site.address}/pages/three.html?three.js`, async (page) => {
     const nodes = asset.levels.map((level) => level.node);
-    const loaded = await page.evaluate(([url, ids, draco]) => window.loadLevels(url, ids, draco),
-      [asset.url, nodes, asset.draco]);
+    const loaded = await page.evaluate(([url, ids, compression]) => window.loadLevels(url, ids, compression),
+      [asset.url, nodes, asset.compression]);
     return job(page, loaded);
   });
 }

@@ -74,7 +74,13 @@ export function trianglesOfScene(gltf) {
     sum + trianglesOfAccessors(gltf, chain[Math.min(level, chain.length - 1)]), 0));
 }
 
-/** Returns what the file says of its levels, finest first: node, triangles by its accessors, extras; and if it uses Draco. */
+/** Returns what a file's geometry is compressed by. */
+function compressionOf({ extensionsUsed = [] }) {
+  if (extensionsUsed.includes('KHR_draco_mesh_compression')) return 'draco';
+  return extensionsUsed.includes('EXT_meshopt_compression') ? 'meshopt' : 'none';
+}
+
+/** Returns what the file says of its levels, finest first: node, triangles by its accessors, extras; and its compression. */
 export async function readLevels(path) {
   const gltf = await readDocument(path);
   const levels = levelNodes(gltf).map((node) => ({
@@ -82,5 +88,5 @@ export async function readLevels(path) {
     triangles: trianglesOfAccessors(gltf, node),
     extras: gltf.nodes[node].extras?.lodestone ?? {},
   }));
-  return { levels, draco: (gltf.extensionsUsed ?? []).includes('KHR_draco_mesh_compression') };
+  return { levels, compression: compressionOf(gltf) };
 }

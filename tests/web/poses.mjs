@@ -50,9 +50,9 @@ function judge(rest, poses, slack) {
   return line;
 }
 
-async function checkSubject(log, studio, { name, animations, targets, slack = usualSlack, proves }, asset) {
+async function checkSubject(log, studio, { animations, targets, slack = usualSlack, proves }, asset) {
   const { page, program, output } = studio;
-  const found = await page.ask(([url, draco]) => window.openAsset(url, draco), [studio.url(asset.path), asset.draco]);
+  const found = await page.ask((choice) => window.openAsset(...choice), [studio.url(asset.path), asset.compression]);
   const pose = (...choice) => page.ask((one) => window.poseLevel(...one), choice);
   const morph = (...choice) => page.ask((one) => window.morphLevel(...one), choice);
   const take = async (job, ...choice) => measure(program, output, await job(0, ...choice), await job(level, ...choice));
@@ -83,7 +83,7 @@ async function checkSubject(log, studio, { name, animations, targets, slack = us
       return percent(apart.max / rest.diagonal);
     }]);
   }
-  await log.run(`${name} level ${level}`, Object.fromEntries(checks));
+  await log.run(`${asset.name} level ${level}`, Object.fromEntries(checks));
 }
 
 async function main() {
@@ -95,9 +95,10 @@ async function main() {
   const log = new Log();
   const assets = planAssets(options);
   for (const subject of subjects) {
-    const asset = assets.find(({ stem, draco }) => stem === subject.name && !draco);
-    if (asset && existsSync(asset.path)) await checkSubject(log, studio, subject, asset);
-    else skip(subject.name);
+    const found = assets.filter(({ stem, compression, path }) =>
+      stem === subject.name && compression !== 'draco' && existsSync(path));
+    for (const asset of found) await checkSubject(log, studio, subject, asset);
+    if (found.length === 0) skip(subject.name);
   }
   await site.close();
   log.close();

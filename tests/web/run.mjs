@@ -9,8 +9,8 @@ import { Log, openSite, readOptions } from './suite.mjs';
 
 /** Returns a one-mesh file with what it says of its levels. */
 async function describe(site, path) {
-  const { levels, draco } = await readLevels(path);
-  return { path, name: basename(path, '.glb'), url: site.url(path), levels, draco };
+  const { levels, compression } = await readLevels(path);
+  return { path, name: basename(path, '.glb'), url: site.url(path), levels, compression };
 }
 
 /** Returns the checks of a one-mesh asset, by name. */
@@ -18,7 +18,7 @@ function checksOfMesh(checks, site, asset) {
   return {
     'gltf-validator': () => checks.validates(asset),
     'extras': () => checks.extrasAgree(asset),
-    [asset.draco ? 'three.js with DRACOLoader' : 'three.js without a decoder']: () => checks.opensInThree(site, asset),
+    [`three.js, ${asset.compression}`]: () => checks.opensInThree(site, asset),
     'Babylon.js': () => checks.opensInBabylon(site, asset),
     'Babylon.js by byte ranges': () => checks.opensInBabylonByRanges(site, asset),
     'pictures': () => checks.takesPictures(site, asset),

@@ -26,7 +26,7 @@ function coveragesFall(gltf) {
 
 async function drawsLessFarAway(studio, asset, gltf) {
   const { meant, read } = await studio.page.ask((choice) => window.countAtDistances(...choice),
-    [studio.url(asset.path), asset.draco, distances]);
+    [studio.url(asset.path), asset.compression, distances]);
   const [whole] = trianglesOfScene(gltf);
   for (const counts of [meant, read]) {
     assert.ok(counts.at(-1) <= largestShareFarAway * whole, `draws ${counts.join(' ')} of ${whole} triangles`);

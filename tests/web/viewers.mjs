@@ -18,7 +18,7 @@ function sameTriangles(shown, expected) {
 
 /** three.js draws each level of all nodes together. */
 export async function drawsInThree(viewers, asset) {
-  const drawn = await viewers.three.ask(([url, draco]) => window.drawLevels(url, draco), [asset.url, asset.draco]);
+  const drawn = await viewers.three.ask((choice) => window.drawLevels(...choice), [asset.url, asset.compression]);
   sameTriangles(drawn, trianglesOfScene(await readDocument(asset.path)));
   return drawn.join(' ');
 }
@@ -63,7 +63,7 @@ export async function loadsFromContainer(viewers, asset) {
 
 /** The official viewer shows the finest level with all textures that the file's materials have. */
 export async function showsInBabylonViewer(viewers, asset) {
-  if (asset.draco) return 'left out: its decoder comes from the network';
+  if (asset.compression !== 'none') return 'left out: its decoder comes from the network';
   const gltf = await readDocument(asset.path);
   const [finest] = trianglesOfScene(gltf);
   const shown = await viewers.babylonViewer.ask((choice) => window.showInViewer(...choice), [asset.url, finest]);

@@ -122,8 +122,7 @@ Result<void> sort_finest_first(std::vector<LevelTarget>& targets, const Scene& s
 AssetOptions storage_of(const Scene& scene, const BuildOptions& options) {
   AssetOptions storage = options.storage;
   storage.keep_decoded = true;
-  storage.draco_position_error =
-      std::min(storage.draco_position_error, kQuantisationShare * smallest_error(scene, options));
+  storage.position_error = std::min(storage.position_error, kQuantisationShare * smallest_error(scene, options));
   return storage;
 }
 

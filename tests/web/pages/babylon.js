@@ -9,6 +9,7 @@ const decoderFiles = {
 };
 BABYLON.DracoDecoder.DefaultConfiguration = decoderFiles;
 BABYLON.DracoCompression.Configuration = { decoder: decoderFiles };
+BABYLON.MeshoptCompression.Configuration = { decoder: { url: '/pages/meshopt_decoder.js' } };
 
 const engine = new BABYLON.Engine(document.getElementById('canvas'), false);
 

@@ -55,10 +55,10 @@ async function dress(scene, textureUrl) {
   }
 }
 
-async function open({ url, draco, bare, texture }) {
+async function open({ url, compression, bare, texture }) {
   const isObj = url.endsWith('.obj');
   const scene = isObj ? new LevelScene({ scene: await new OBJLoader().loadAsync(url), animations: [] }, [])
-    : await openScene(url, draco);
+    : await openScene(url, compression);
   scene.fromGltf = !isObj;
   if (bare) await dress(scene, texture);
   scene.show(0);

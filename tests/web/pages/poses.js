@@ -5,9 +5,9 @@ import { openScene } from './scene.js';
 let scene;
 
 /** Opens a file; returns its animations: name and seconds. */
-window.openAsset = async (url, withDraco) => {
+window.openAsset = async (url, compression) => {
   scene?.dispose();
-  scene = await openScene(url, withDraco);
+  scene = await openScene(url, compression);
   return scene.animations.map(({ name, duration }) => ({ name, duration }));
 };
 

@@ -1,10 +1,13 @@
 // A glTF scene in three.js whose levels can be put in place one after the other: GLTFLoader knows nothing of MSFT_lod.
 import { DRACOLoader } from 'three/addons/loaders/DRACOLoader.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 
-export function makeLoader(withDraco) {
+/** A loader that has a decoder for one compression alone: 'draco', 'meshopt' or 'none'. */
+export function makeLoader(compression) {
   const loader = new GLTFLoader();
-  if (withDraco) {
+  if (compression === 'meshopt') loader.setMeshoptDecoder(MeshoptDecoder);
+  if (compression === 'draco') {
     const draco = new DRACOLoader();
     draco.setDecoderPath('/node_modules/three/examples/jsm/libs/draco/gltf/');
     loader.setDRACOLoader(draco);
@@ -63,8 +66,8 @@ function disposeMesh({ geometry, material, skeleton }) {
   material.dispose();
 }
 
-/** Opens a glTF file. Only with `withDraco` there is a decoder at hand. */
-export async function openScene(url, withDraco) {
-  const gltf = await makeLoader(withDraco).loadAsync(url);
+/** Opens a glTF file as `makeLoader` says. */
+export async function openScene(url, compression) {
+  const gltf = await makeLoader(compression).loadAsync(url);
   return new LevelScene(gltf, await loadChains(gltf));
 }

@@ -14,9 +14,9 @@ function countTriangles(root) {
 }
 
 /** Returns the triangles drawn from so many sizes away: the coverage's own meaning, and as the package reads it. */
-window.countAtDistances = async (url, draco, distances) => {
+window.countAtDistances = async (url, compression, distances) => {
   const open = async (options) => {
-    const loader = makeLoader(draco);
+    const loader = makeLoader(compression);
     loader.register((parser) => new GLTFLodExtension(parser, options(parser)));
     const { scene } = await loader.loadAsync(url);
     scene.updateMatrixWorld(true);

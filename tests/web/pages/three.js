@@ -19,8 +19,8 @@ function countTriangles(object) {
 let levels = [];
 
 /** Loads the nodes of a file; returns the triangles of the default scene and of each node. */
-window.loadLevels = async (url, nodes, withDraco) => {
-  const gltf = await makeLoader(withDraco).loadAsync(url);
+window.loadLevels = async (url, nodes, compression) => {
+  const gltf = await makeLoader(compression).loadAsync(url);
   levels = await Promise.all(nodes.map((node) => gltf.parser.getDependency('node', node)));
   return { scene: countTriangles(gltf.scene), levels: levels.map(countTriangles) };
 };

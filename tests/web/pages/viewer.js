@@ -19,8 +19,8 @@ function drawnTriangles(root) {
 }
 
 /** Returns the triangles drawn of each level, finest first. */
-window.drawLevels = async (url, withDraco) => {
-  const scene = await openScene(url, withDraco);
+window.drawLevels = async (url, compression) => {
+  const scene = await openScene(url, compression);
   const counts = [];
   for (let level = 0; level < scene.levelCount; ++level) {
     scene.show(level);

@@ -33,21 +33,34 @@ struct PositionGrid {
   float step = 0;  ///< > 0; no position lies farther than 2²⁹ steps from the origin
 };
 
+/// What geometry is compressed by. What is given as bits or a grid is for Draco and meshopt.
+enum class Compression {
+  None,     ///< plain accessors, everything as it is
+  Draco,    ///< KHR_draco_mesh_compression: smallest
+  Meshopt,  ///< EXT_meshopt_compression: decoded many times faster, packs morph targets, too
+};
+
+/// Returns "none", "draco" or "meshopt".
+const char* name_of(Compression compression);
+
 /// How a file stores its geometry.
+///
+/// Meshopt's grids have steps of powers of two, the next one below what is asked for, so that positions are floats
+/// without a transform in the nodes; normals and tangents are stored as KHR_mesh_quantization allows.
 struct AssetOptions {
-  bool draco = true;  ///< compress it by KHR_draco_mesh_compression; else plain accessors
+  Compression compression = Compression::Draco;
   /// 1 to 30, one grid for all levels, and all meshes of a scale. Unset: 14, or what the finest parts of the shape and
-  /// `draco_position_error` need; where 23 do not do, positions stay the floats they are. Beyond 24, here or below,
+  /// `position_error` need; where 23 do not do, positions stay the floats they are. Beyond 24, here or below,
   /// Draco codes no entropy, which would take four bytes for every step of the grid.
-  std::optional<int> draco_position_bits;
+  std::optional<int> position_bits;
   /// The farthest that a vertex may move, world units.
-  double draco_position_error = std::numeric_limits<double>::infinity();
-  std::optional<PositionGrid> draco_position_grid;  ///< in place of a grid of so many bits, fitted to the meshes
-  /// Of each of the two numbers that a normal is stored as.
-  int draco_normal_bits = 10;
-  int draco_texcoord_bits = 12;  ///< of a texture's width: coordinates beyond it get more
-  /// Of tangents' range, of colours' and weights' unit. All other attributes are data, which Draco keeps exactly.
-  int draco_generic_bits = 10;
+  double position_error = std::numeric_limits<double>::infinity();
+  std::optional<PositionGrid> position_grid;  ///< in place of a grid of so many bits, fitted to the meshes
+  /// Of each of the two numbers that a normal is stored as; meshopt takes 16 at most, and tangents alike.
+  int normal_bits = 10;
+  int texcoord_bits = 12;  ///< of a texture's width: coordinates beyond it get more
+  /// Of tangents' range, of colours' and weights' unit. All other attributes are data, which is kept exactly.
+  int generic_bits = 10;
   int draco_compression_level = 7;  ///< 0 to 10
   /// Not empty: a .gltf of this name without its extension, its data in NAME.bin and its images as files beside it, in
   /// place of a .glb.
@@ -67,7 +80,7 @@ struct AssetLayout {
     std::uint64_t vertex_count = 0;    ///< as decoded, all instances counted
   };
   std::vector<Level> levels;
-  double quantisation_error = 0;  ///< the farthest Draco moves a vertex, world units; 0 without Draco
+  double quantisation_error = 0;  ///< the farthest that rounding to the grid moves a vertex, world units
   int position_bits = 0;          ///< of the finest grid; 0 where positions are exact
   std::uint64_t stream_bytes = 0;
   std::uint64_t total_bytes = 0;   ///< of all files together
@@ -105,7 +118,7 @@ class Asset {
     double rms_deviation = 0;        ///< weighted alike
     double curvature_error = 0;      ///< the largest
     double screen_coverage = 0;      ///< of the screen's height, the largest
-    bool draco = false;
+    Compression compression = Compression::None;  ///< of any of its meshes
   };
   /// The removal stream of one mesh.
   struct Stream {

@@ -93,7 +93,7 @@ struct BuildResult {
   Stream stream;                   ///< of all meshes together
   std::vector<MeshPart> meshes;    ///< in the document's order
   std::vector<std::string> notes;  ///< as the observer was told
-  double grid_error = 0;           ///< the farthest that Draco's grid alone may move a vertex, world units
+  double grid_error = 0;           ///< the farthest that the grid of positions alone may move a vertex, world units
   double quantisation_error = 0;   ///< the farthest it did
   int position_bits = 0;           ///< of Draco's finest grid; 0 where positions are exact
   Timings timings_ms;

@@ -39,7 +39,7 @@ struct BuildOptions {
   bool stream = true;                          ///< write each mesh's removal stream, where there is one file
   bool strict = false;                         ///< stop before anything is encoded where a target cannot be met
   bool keep_levels = false;                    ///< keep the levels as the files have them: see `BuildResult::decoded`
-  /// How it is stored. The build itself sets `keep_decoded` and, where levels are by error, `draco_position_error`.
+  /// How it is stored. The build itself sets `keep_decoded` and, where levels are by error, `position_error`.
   /// With a file for each level, level i's `gltf_name` ends in "_LODi".
   AssetOptions storage;
 };
