@@ -38,7 +38,7 @@ void check(const lodestone::Scene& scene) {
   std::vector<lodestone::LeveledMesh> meshes;
   for (const lodestone::SceneMesh& mesh : scene.meshes()) meshes.push_back({{{mesh.mesh, {}, 0, "whole"}}, {}});
   lodestone::AssetOptions options;
-  options.compression = Compression::None;
+  options.compression = lodestone::Compression::None;
   const auto asset = encode_scene(scene, meshes, options);
   if (!asset || !lodestone::Scene::read_bytes(asset->glb, "glb")) std::abort();
 }
