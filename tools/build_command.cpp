@@ -10,6 +10,7 @@
 #include <lodestone/core/detail/try.h>
 #include <lodestone/core/parallel.h>
 
+#include "build_lods.h"
 #include "build_output.h"
 #include "build_run.h"
 #include "interruption.h"
@@ -44,6 +45,11 @@ bool writes_to_standard_output(const BuildCommand& options) {
 }
 
 Result<Outcome> build_one(const BuildCommand& options, ProgressBar& progress) {
+  if (writes_stream_file(options)) {
+    const Result<Outcome> built = build_stream_file(options, progress);
+    progress.clear();
+    return built;
+  }
   const Result<FinishedBuild> result = run_build(options, progress);
   progress.clear();
   if (!result) return tl::unexpected(result.error());
@@ -91,10 +97,11 @@ Result<Outcome> build_each(const std::vector<BuildCommand>& parts, ProgressBar& 
 }  // namespace
 
 void BuildCommand::add_to(CLI::App& app) {
-  files.add_to(app, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others; - for standard input",
-               "The .glb or .gltf to write; a folder, for several inputs; - for standard output");
+  files.add_to(
+      app, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others; - for standard input",
+      "The .glb or .gltf to write, or a .lods, the stream alone; a folder, for several inputs; - for standard output");
   app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
-      ->check(CLI::IsMember({"glb", "gltf"}))
+      ->check(CLI::IsMember({"glb", "gltf", "lods"}))
       ->type_name("NAME");
   app.add_option("--input-format", input_format,
                  "What standard input is, as an extension (default: as its content says)")
@@ -121,6 +128,7 @@ void BuildCommand::add_to(CLI::App& app) {
       "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --compress meshopt\n"
       "  lodestone build bunny.obj -o bunny.glb --html bunny.html\n"
       "  lodestone build town.gltf -o town.glb --profile files\n"
+      "  lodestone build bunny.obj -o bunny.lods --qp 12\n"
       "  lodestone build *.obj -o lods/");
 }
 
@@ -204,7 +212,8 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->excludes(compress)
       ->group(group);
   CLI::Option* bits =
-      app.add_option("--qp", position_bits, "Bits of a position (default 14, more where the shape needs them)")
+      app.add_option("--qp", position_bits,
+                     "Bits of a position (default 14, more where the shape needs them); of a .lods 8 to 16")
           ->check(CLI::Range(1, 30))
           ->type_name("BITS")
           ->group(group);

@@ -24,7 +24,7 @@ class MadeFolders;
 /// `lodestone build`: a scene or mesh file in, a progressive multi-LOD .glb or .gltf out; or several, each for itself.
 struct BuildCommand {
   FileWords files;
-  std::string format = "glb";   ///< of what goes into a folder or to the standard output
+  std::string format = "glb";   ///< of what goes into a folder or to the standard output; or gltf, lods
   std::string input_format;     ///< of the standard input, an extension without the dot; empty: go by the content
   std::filesystem::path input;  ///< one of the files, as the next
   std::filesystem::path output;

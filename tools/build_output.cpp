@@ -53,7 +53,8 @@ Result<void> check_format(const BuildCommand& options) {
   const std::string hint = extension.empty() ? ": write '" + options.output.string() + ".glb', or '" +
                                                    options.output.string() + "/' for a folder"
                                              : "";
-  return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " does not end in .glb or .gltf" + hint);
+  return fail(ErrorCode::InvalidArgument,
+              "-o: " + quoted(options.output) + " does not end in .glb, .gltf or .lods" + hint);
 }
 
 Result<void> check_path(const BuildCommand& options, const std::filesystem::path& path) {

@@ -57,7 +57,20 @@ struct StreamedScene {
   std::vector<ProgressiveMesh> progressive;
 };
 
+/// Of a stream alone, whose materials nobody knows.
+Result<StreamedScene> scene_of_stream(const std::filesystem::path& path, ProgressiveMesh mesh) {
+  for (FaceGroup& group : mesh.groups) group.material = 0;
+  MeshFile file;
+  file.mesh = extract_level(mesh, kNoIndex);
+  LODESTONE_TRY(Scene scene, Scene::from_mesh(std::move(file), path.stem().string()));
+  StreamedScene streamed{std::move(scene), {0}, {}};
+  streamed.progressive.push_back(std::move(mesh));
+  return streamed;
+}
+
 Result<StreamedScene> read_streams(const std::filesystem::path& path) {
+  LODESTONE_TRY(std::optional<StreamFile> stream, read_stream_file(path));
+  if (stream) return scene_of_stream(path, std::move(stream->mesh));
   LODESTONE_TRY(Scene scene, read_levels(path, 0));
   StreamedScene streamed{std::move(scene), {}, {}};
   for (std::size_t i = 0; i < streamed.scene.meshes().size(); ++i) {
@@ -184,7 +197,7 @@ Result<Outcome> extract_target(const ExtractCommand& options, const std::filesys
 }  // namespace
 
 void ExtractCommand::add_to(CLI::App& app) {
-  files.add_to(app, "A .glb or .gltf that lodestone build wrote, with its streams; - for standard input",
+  files.add_to(app, "A .glb or .gltf that lodestone build wrote, with its streams, or a .lods; - for standard input",
                "The .glb, .gltf, .obj or .ply to write; - for standard output");
   app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
       ->check(CLI::IsMember({"glb", "gltf", "obj", "ply"}))

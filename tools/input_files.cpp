@@ -80,10 +80,10 @@ Result<Scene> read_scene(const std::filesystem::path& path, const std::string& f
   return Scene::read_bytes(bytes, format).map_error(of_standard_input);
 }
 
-Result<MeshFile> read_mesh_file(const std::filesystem::path& path) {
+Result<MeshFile> read_mesh_file(const std::filesystem::path& path, const std::string& format) {
   if (!is_standard_stream(path)) return read_mesh(path);
   LODESTONE_TRY(const std::vector<std::byte> bytes, read_standard_input());
-  return read_mesh_bytes(bytes, "").map_error(of_standard_input);
+  return read_mesh_bytes(bytes, format).map_error(of_standard_input);
 }
 
 Result<AssetOrScene> read_asset_or_scene(const std::filesystem::path& path) {
@@ -127,6 +127,15 @@ Result<Scene> read_levels(const std::filesystem::path& path, std::size_t level) 
   std::string why = scene.error().message;
   if (const std::string prefix = quoted(path) + ": "; why.starts_with(prefix)) why.erase(0, prefix.size());
   return tl::unexpected(not_streamed(path, scene.error().code, why));
+}
+
+Result<std::optional<StreamFile>> read_stream_file(const std::filesystem::path& path) {
+  if (is_standard_stream(path) || !is_stream(read_start(path))) return std::nullopt;
+  LODESTONE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  StreamReader reader;
+  const Result<void> read = reader.append(bytes).and_then([&] { return reader.finish(); });
+  if (!read) return fail(read.error().code, quoted(path) + ": " + read.error().message, read.error().byte_offset);
+  return StreamFile{reader.mesh(), {reader.chunks().begin(), reader.chunks().end()}, bytes.size()};
 }
 
 Error not_streamed(const std::filesystem::path& path, ErrorCode code, const std::string& why) {

@@ -11,6 +11,7 @@
 #include <lodestone/io/asset.h>
 #include <lodestone/io/read_mesh.h>
 #include <lodestone/io/scene.h>
+#include <lodestone/io/stream_reader.h>
 
 namespace lodestone::tool {
 
@@ -20,14 +21,21 @@ namespace lodestone::tool {
 /// does.
 Result<Scene> read_scene(const std::filesystem::path& path, const std::string& format);
 
-/// Reads a mesh. The standard input is what its content says.
-Result<MeshFile> read_mesh_file(const std::filesystem::path& path);
+/// Reads a mesh; `format` as above.
+Result<MeshFile> read_mesh_file(const std::filesystem::path& path, const std::string& format = "");
 
 /// A glTF with levels of detail or removal streams, all decoded.
 struct DecodedAsset {
   std::vector<Asset::Level> levels;
   std::vector<Asset::Stream> streams;
   std::uint64_t total_bytes = 0;
+};
+
+/// A stream in a file of its own.
+struct StreamFile {
+  ProgressiveMesh mesh;
+  std::vector<ReaderChunk> chunks;
+  std::uint64_t bytes = 0;  ///< of the file
 };
 
 /// What a file turned out to be.
@@ -42,6 +50,10 @@ Result<AssetOrScene> read_asset_or_scene(const std::filesystem::path& path);
 
 /// Reads a level of a multi-LOD file and the streams. Errors: as not_streamed says it for what was not made for this.
 Result<Scene> read_levels(const std::filesystem::path& path, std::size_t level);
+
+/// Reads a file that is a stream alone; nothing of one that is something else, or the standard input. Errors: as those
+/// of StreamReader; a file that ends early is what has come so far.
+Result<std::optional<StreamFile>> read_stream_file(const std::filesystem::path& path);
 
 /// Returns the error of a file that has no stream where one is needed, whatever it is.
 Error not_streamed(const std::filesystem::path& path, ErrorCode code, const std::string& why);

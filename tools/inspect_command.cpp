@@ -255,6 +255,46 @@ void print_inventory(const std::string& path, const Inventory& inventory) {
   for (const std::string& line : inventory.notes) std::printf("note: %s\n", line.c_str());
 }
 
+// A stream in a file of its own: what its finest level is, and its chunks.
+
+Json chunk_json(const ReaderChunk& chunk, std::size_t i, const StreamFile& stream) {
+  const Index first = i == 0 ? 0 : stream.chunks[i - 1].position;
+  return {{"byte_offset", chunk.bytes.begin},
+          {"bytes", chunk.bytes.end - chunk.bytes.begin},
+          {"first_record", first},
+          {"records", chunk.position - first},
+          {"faces", chunk.face_count},
+          {"vertices", chunk.vertex_count},
+          {"deviation_bound", chunk.deviation}};
+}
+
+void print_chunks(const StreamFile& stream) {
+  std::printf("\nstream of %zu chunks\n", stream.chunks.size());
+  TextTable table({"chunk", "faces", "vertices", "deviation", "bytes", "bytes so far"});
+  for (std::size_t i = 0; i < stream.chunks.size(); ++i) {
+    const ReaderChunk& chunk = stream.chunks[i];
+    table.add({text_of(i), text_of(chunk.face_count), text_of(chunk.vertex_count), number_text(chunk.deviation),
+               text_of(chunk.bytes.end - chunk.bytes.begin), text_of(chunk.bytes.end)});
+  }
+  table.print();
+}
+
+Result<Outcome> inspect_stream(const std::string& path, const Scene& scene, const StreamFile& stream, bool json) {
+  LODESTONE_TRY(const Inventory inventory, take_inventory(scene, stream.bytes));
+  if (!json) {
+    print_inventory(path, inventory);
+    print_chunks(stream);
+    return Outcome::Done;
+  }
+  Json all = inventory_json(path, inventory);
+  all["kind"] = "stream";
+  all["chunks"] = Json::array();
+  for (std::size_t i = 0; i < stream.chunks.size(); ++i)
+    all["chunks"].push_back(chunk_json(stream.chunks[i], i, stream));
+  std::fputs(json_text(all).c_str(), stdout);
+  return Outcome::Done;
+}
+
 Result<Outcome> inspect_scene(const std::string& path, const Scene& scene, std::uint64_t bytes, bool json) {
   LODESTONE_TRY(const Inventory inventory, take_inventory(scene, bytes));
   if (json) {
@@ -278,6 +318,8 @@ void InspectCommand::add_to(CLI::App& app) {
 Result<Outcome> InspectCommand::run() const {
   LODESTONE_TRY(const AssetOrScene file, read_asset_or_scene(input));
   if (file.asset) return inspect_asset(input.string(), *file.asset, json);
+  LODESTONE_TRY(const std::optional<StreamFile> stream, read_stream_file(input));
+  if (stream) return inspect_stream(input.string(), *file.scene, *stream, json);
   return inspect_scene(input.string(), *file.scene, file.bytes, json);
 }
 

@@ -6,6 +6,8 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
+#include <lodestone/io/stream_reader.h>
+#include <lodestone/lod/cursor.h>
 
 #include "base/bytes.h"
 #include "base/files_beside.h"
@@ -20,7 +22,7 @@ namespace {
 
 using namespace detail;
 
-enum class Format { Gltf, Obj, Off, Ply, Stl, Other };
+enum class Format { Gltf, Obj, Off, Ply, Stl, Stream, Other };
 
 /// Nothing in a binary STL says what it is but that its size fits its count, 50 bytes for each triangle.
 bool has_size_of_stl(std::span<const std::byte> bytes) {
@@ -31,6 +33,7 @@ bool has_size_of_stl(std::span<const std::byte> bytes) {
 Format detect_format(std::span<const std::byte> bytes, std::string_view extension) {
   const std::string_view start = without_byte_order_mark(as_text(bytes));
   if (is_glb(bytes)) return Format::Gltf;
+  if (is_stream(bytes)) return Format::Stream;
   if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Format::Ply;
   if (extension == "gltf" || extension == "glb") return Format::Gltf;
   if (extension == "obj") return Format::Obj;
@@ -52,9 +55,24 @@ bool is_wide_text(std::span<const std::byte> bytes) {
   return start.starts_with("\xfe\xff") || start.starts_with("\xff\xfe") || start.find('\0') != start.npos;
 }
 
+/// Reads the finest level that a stream has. Its materials name nothing in it.
+Result<SoupFile> read_stream(std::span<const std::byte> bytes) {
+  StreamReader reader;
+  LODESTONE_CHECK(reader.append(bytes));
+  LODESTONE_CHECK(reader.finish());
+  SoupFile file;
+  file.soup = to_soup(extract_level(reader.mesh(), kNoIndex));
+  file.soup.face_material.clear();
+  if (!reader.done())
+    file.notes.push_back(
+        text("the stream ends early, with chunk ", reader.chunk_count(), " of ", reader.chunks().size()));
+  return file;
+}
+
 Result<SoupFile> read_soup(std::span<const std::byte> bytes, const std::string& extension, const FileFetcher& fetch) {
   const Format format = detect_format(bytes, extension);
-  const bool may_be_binary = is_glb(bytes) || format == Format::Stl || format == Format::Other;
+  const bool may_be_binary =
+      is_glb(bytes) || format == Format::Stl || format == Format::Stream || format == Format::Other;
   if (!may_be_binary && is_wide_text(bytes))
     return fail(ErrorCode::Unsupported, "the text is UTF-16 or UTF-32: save it as UTF-8");
   switch (format) {
@@ -68,6 +86,8 @@ Result<SoupFile> read_soup(std::span<const std::byte> bytes, const std::string& 
       return read_ply(bytes, fetch);
     case Format::Stl:
       return read_stl(bytes);
+    case Format::Stream:
+      return read_stream(bytes);
     case Format::Other:
       break;
   }

@@ -12,8 +12,10 @@
 #include "base/bytes.h"
 #include "codec/compact_decoder.h"
 #include "stream/growing_mesh.h"
-#include "stream/stream_decoder.h"
 #include "stream/stream_layout.h"
+#if LODESTONE_REMOVAL_STREAMS
+#include "stream/stream_decoder.h"
+#endif
 
 namespace lodestone {
 namespace {
@@ -23,6 +25,9 @@ using namespace detail;
 // Where both formats have the same: magic, major and minor version, length of the header.
 constexpr std::uint64_t kStartBytes = 16;
 constexpr std::size_t kMajorAt = 8, kHeaderBytesAt = 12;
+
+/// The first version that is read: those before the compact stream need zstd, which not every build has.
+constexpr std::uint16_t kFirstMajor = LODESTONE_REMOVAL_STREAMS ? 1 : kCompactMajor;
 
 /// Of either format's chunks, the first of which holds no records where that is how the format has it.
 template <class Chunk>
@@ -56,7 +61,11 @@ class StreamReader::State {
   const ProgressiveMesh& mesh() const { return mesh_; }
 
  private:
-  using Decoder = std::variant<std::monostate, StreamDecoder, CompactDecoder>;
+#if LODESTONE_REMOVAL_STREAMS
+  using Decoder = std::variant<std::monostate, CompactDecoder, StreamDecoder>;
+#else
+  using Decoder = std::variant<std::monostate, CompactDecoder>;
+#endif
 
   void stop(Error error);
   Result<void> take_unit(std::span<const std::byte> bytes);
@@ -123,12 +132,11 @@ Result<void> StreamReader::State::take_unit(std::span<const std::byte> bytes) {
 }
 
 Result<void> StreamReader::State::read_start(std::span<const std::byte> bytes) {
-  if (std::memcmp(bytes.data(), kStreamMagic.data(), kStreamMagic.size()) != 0)
-    return fail(ErrorCode::Malformed, "stream: does not begin with the magic number", 0);
+  if (!is_stream(bytes)) return fail(ErrorCode::Malformed, "stream: does not begin with the magic number", 0);
   const auto major = load<std::uint16_t>(bytes, kMajorAt);
-  if (major == 0 || major > kCompactMajor)
-    return fail(ErrorCode::Unsupported, text("stream: version ", major, ", where 1 to ", kCompactMajor, " are known"),
-                kMajorAt);
+  if (major < kFirstMajor || major > kCompactMajor)
+    return fail(ErrorCode::Unsupported,
+                text("stream: version ", major, ", where ", kFirstMajor, " to ", kCompactMajor, " are read"), kMajorAt);
   is_compact_ = major == kCompactMajor;
   const std::uint32_t header_bytes = load_u32(bytes, kHeaderBytesAt);
   if (header_bytes <= kStartBytes)
@@ -139,16 +147,19 @@ Result<void> StreamReader::State::read_start(std::span<const std::byte> bytes) {
 }
 
 Result<void> StreamReader::State::read_header(std::span<const std::byte> bytes) {
-  if (is_compact_) {
-    auto header = read_compact_header(bytes);
-    if (!header) return fail(header.error().code, name() + header.error().message, header.error().byte_offset);
-    chunks_ = reader_chunks<CompactChunk>(compact_chunks(*header));
-    decoder_.emplace<CompactDecoder>(std::move(*header), mesh_, options_.most_bytes);
-  } else {
+#if LODESTONE_REMOVAL_STREAMS
+  if (!is_compact_) {
     LODESTONE_TRY(StreamStart start, read_stream_start(bytes));
     chunks_ = reader_chunks<StreamChunk>(start.directory.chunks);
     decoder_.emplace<StreamDecoder>(std::move(start), mesh_, options_.most_bytes);
+    unit_ = chunks_.front().bytes;
+    return {};
   }
+#endif
+  auto header = read_compact_header(bytes);
+  if (!header) return fail(header.error().code, name() + header.error().message, header.error().byte_offset);
+  chunks_ = reader_chunks<CompactChunk>(compact_chunks(*header));
+  decoder_.emplace<CompactDecoder>(std::move(*header), mesh_, options_.most_bytes);
   unit_ = chunks_.front().bytes;
   return {};
 }
@@ -156,7 +167,9 @@ Result<void> StreamReader::State::read_header(std::span<const std::byte> bytes) 
 Result<void> StreamReader::State::read_chunk(std::span<const std::byte> bytes) {
   Result<void> added;
   if (auto* const decoder = std::get_if<CompactDecoder>(&decoder_)) added = decoder->add_chunk(bytes);
+#if LODESTONE_REMOVAL_STREAMS
   if (auto* const decoder = std::get_if<StreamDecoder>(&decoder_)) added = decoder->add_chunk(bytes);
+#endif
   if (!added)
     return fail(added.error().code, text(name(), "chunk ", chunk_count_, ": ", added.error().message), unit_.begin);
   ++chunk_count_;
@@ -168,6 +181,11 @@ Result<void> StreamReader::State::read_chunk(std::span<const std::byte> bytes) {
   decoder_.emplace<std::monostate>();
   trim(mesh_);
   return {};
+}
+
+bool is_stream(std::span<const std::byte> bytes) {
+  return bytes.size() >= kStreamMagic.size() &&
+         std::memcmp(bytes.data(), kStreamMagic.data(), kStreamMagic.size()) == 0;
 }
 
 StreamReader::StreamReader(const StreamReaderOptions& options) : state_(std::make_unique<State>(options)) {}

@@ -23,7 +23,8 @@ struct MeshFile {
   std::vector<std::string> notes;   ///< what the file holds that `mesh` does not, one sentence each
 };
 
-/// Reads triangles from OBJ, PLY, STL, OFF, glTF or GLB (by content, then by extension), or whatever Assimp knows.
+/// Reads triangles from OBJ, PLY, STL, OFF, glTF, GLB or a stream (by content, then by extension), or whatever Assimp
+/// knows. Of a stream the finest level that it has is read, without materials.
 ///
 /// Coordinates are the correctly rounded floats of what the file says (not promised for Assimp's formats). A glTF scene
 /// is flattened into world space; of a multi-LOD file the finest level is read. Draco, KHR_mesh_quantization and

@@ -84,4 +84,7 @@ class StreamReader {
   std::unique_ptr<State> state_;
 };
 
+/// Returns whether bytes begin as a stream of any version does.
+bool is_stream(std::span<const std::byte> bytes);
+
 }  // namespace lodestone

@@ -1,0 +1,149 @@
+// Streams in files of their own: what build writes, the other commands read.
+
+#include <nlohmann/json.hpp>
+
+#include <lodestone/core/assemble.h>
+#include <lodestone/io/file.h>
+#include <lodestone/io/read_mesh.h>
+#include <lodestone/io/stream_reader.h>
+#include <lodestone/io/write_mesh.h>
+#include <lodestone/lod/cursor.h>
+
+#include "support/catch.h"
+#include "support/data.h"
+#include "support/program.h"
+#include "support/shapes.h"
+
+using namespace lodestone;
+using namespace lodestone::test;
+
+namespace {
+
+std::filesystem::path write_ball(const ScratchDirectory& folder) {
+  std::filesystem::path path = folder / "ball.obj";
+  REQUIRE(write_mesh(path, assemble(icosphere(3, 0.02, 1)).value().mesh));
+  return path;
+}
+
+std::string build_ball(const ScratchDirectory& folder) {
+  const std::filesystem::path stream = folder / "ball.lods";
+  const ProgramRun run = run_program({"build", write_ball(folder).string(), "-o", stream.string()});
+  CAPTURE(run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.out, contains("ball.lods: 1280 faces, 642 vertices; base mesh 4 faces; "));
+  CHECK_THAT(run.err, contains("draft"));
+  return stream.string();
+}
+
+}  // namespace
+
+TEST_CASE("build writes a stream that holds the input on its grid") {
+  const ScratchDirectory folder;
+  const std::string stream = build_ball(folder);
+  CHECK(names_in(folder.path()) == std::vector<std::string>{"ball.lods", "ball.obj"});
+  StreamReader reader;
+  REQUIRE(reader.append(read_file(stream).value()));
+  REQUIRE(reader.done());
+  CHECK(reader.mesh().record_count() == 638);
+  const Mesh level = extract_level(reader.mesh(), kNoIndex);
+  const Mesh input = read_mesh(folder / "ball.obj").value().mesh;
+  CHECK(level.face_count() == input.face_count());
+  CHECK(std::abs(surface_area(level) - surface_area(input)) < 1e-3 * surface_area(input));
+
+  const std::string coarser = (folder / "coarser.lods").string();
+  REQUIRE(run_program({"build", (folder / "ball.obj").string(), coarser, "--qp", "9", "-q"}).exit_code == 0);
+  CHECK(static_cast<double>(std::filesystem::file_size(coarser)) <
+        0.8 * static_cast<double>(std::filesystem::file_size(stream)));
+  const ProgramRun piped = run_program({"build", (folder / "ball.obj").string(), "-o", "-", "--format", "lods"});
+  CHECK(piped.out == file_text(stream));
+}
+
+TEST_CASE("inspect lists a stream's chunks") {
+  const ScratchDirectory folder;
+  const std::string stream = build_ball(folder);
+  const ProgramRun run = run_program({"inspect", stream, "--json"});
+  REQUIRE(run.exit_code == 0);
+  const auto json = nlohmann::json::parse(run.out);
+  CHECK(json["kind"] == "stream");
+  CHECK(json["faces"] == 1280);
+  CHECK(json["bytes"] == std::filesystem::file_size(stream));
+  REQUIRE(json["chunks"].size() >= 2);
+  CHECK(json["chunks"].back()["faces"] == 1280);
+  CHECK(json["chunks"].back()["deviation_bound"] == 0);
+  std::uint64_t end = json["chunks"][0]["byte_offset"];
+  for (const auto& chunk : json["chunks"]) {
+    CHECK(chunk["byte_offset"] == end);
+    end += chunk["bytes"].get<std::uint64_t>();
+  }
+  CHECK(end == json["bytes"]);
+  CHECK_THAT(run_program({"inspect", stream}).out, contains("bytes so far"));
+}
+
+TEST_CASE("extract and compare take a stream like any file, and build does as its input") {
+  const ScratchDirectory folder;
+  const std::string stream = build_ball(folder), level = (folder / "level.obj").string();
+  const ProgramRun extracted = run_program({"extract", stream, "--faces", "100", "-o", level});
+  CAPTURE(extracted.err);
+  REQUIRE(extracted.exit_code == 0);
+  const std::size_t faces = read_mesh(level).value().mesh.face_count();
+  CHECK(faces <= 100);
+  CHECK(faces > 60);
+  REQUIRE(run_program({"extract", stream, "--error", "0", "-o", (folder / "whole.glb").string()}).exit_code == 0);
+  const ProgramRun compared = run_program({"compare", stream, (folder / "whole.glb").string(), "--json"});
+  REQUIRE(compared.exit_code == 0);
+  CHECK(nlohmann::json::parse(compared.out)["percent_of_diagonal"]["forward"]["max"] == 0);
+  const ProgramRun built = run_program({"build", stream, "-o", (folder / "ball.glb").string()});
+  CHECK(built.exit_code == 0);
+  CHECK(run_program({"extract", stream, "--level", "0", "-o", level}).exit_code == 3);
+}
+
+TEST_CASE("a stream that ends early is read as far as it goes, and a broken one refused") {
+  const ScratchDirectory folder;
+  const std::string stream = build_ball(folder);
+  StreamReader reader;
+  const std::vector<std::byte> bytes = read_file(stream).value();
+  REQUIRE(reader.append(bytes));
+  const std::string cut = (folder / "cut.lods").string(), torn = (folder / "torn.lods").string();
+  const std::string text = file_text(stream);
+  write_text(cut, text.substr(0, reader.chunks()[0].bytes.end));
+  write_text(torn, text.substr(0, text.size() - 1));
+  const ProgramRun run = run_program({"inspect", cut});
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.out, contains("the stream ends early, with chunk 1 of "));
+  const ProgramRun refused = run_program({"inspect", torn});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, contains("ends inside chunk"));
+}
+
+TEST_CASE("options that say nothing for a stream are refused by name") {
+  const ScratchDirectory folder;
+  const std::string ball = write_ball(folder).string(), stream = (folder / "x.lods").string();
+  const auto refused = [&](std::vector<std::string> more, int exit_code, const char* words) {
+    std::vector<std::string> arguments = {"build", ball, "-o", stream};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramRun run = run_program(arguments);
+    CAPTURE(run.err);
+    CHECK(run.exit_code == exit_code);
+    CHECK_THAT(run.err, contains(words));
+    CHECK(!std::filesystem::exists(stream));
+  };
+  refused({"--levels", "3"}, 1, "--levels: a .lods has every level");
+  refused({"--error", "1%"}, 1, "a .lods has every level");
+  refused({"--profile", "files"}, 1, "--profile");
+  refused({"--no-stream"}, 1, "--no-stream");
+  refused({"--html", (folder / "p.html").string()}, 1, "--html");
+  refused({"--report", (folder / "r.json").string()}, 1, "--report");
+  refused({"--qp", "20"}, 1, "grid of 20 bits");
+  refused({"--qp", "7"}, 1, "grid of 7 bits");
+}
+
+TEST_CASE("a stream has the attributes of its input") {
+  const ScratchDirectory folder;
+  const std::string stream = (folder / "suzi.lods").string();
+  const ProgramRun run =
+      run_program({"build", std::string(LODESTONE_SOURCE_DIR) + "/demo/suzi.glb", "-o", stream, "-q"});
+  CAPTURE(run.err);
+  REQUIRE(run.exit_code == 0);
+  const auto json = nlohmann::json::parse(run_program({"inspect", stream, "--json"}).out);
+  CHECK(json["attributes"] == nlohmann::json::array({"NORMAL"}));
+}
