@@ -167,9 +167,10 @@ detail::QuantizationGrid attribute_grid(const Attribute& attribute, const Compac
   float range = 0;
   for (std::size_t c = 0; c < size; ++c) range = std::max(range, high[c] - low[c]);
   const bool is_texture = attribute.name.starts_with("TEXCOORD_");
-  const int bits = attribute.name == "NORMAL" ? options.normal_bits
-                   : is_texture               ? options.texture_bits
-                                              : options.other_bits;
+  const int bits = attribute.name == "NORMAL"               ? options.normal_bits
+                   : is_texture                             ? options.texture_bits
+                   : attribute.name.starts_with("WEIGHTS_") ? options.weight_bits
+                                                            : options.other_bits;
   return {low, range > 0 ? range : 1, bits};
 }
 
@@ -194,7 +195,7 @@ double draco_scene_bits(const Mesh& mesh, const CompactOptions& options, int lev
 /// What the streams of a scene's meshes take together.
 struct SceneBits {
   double vertices = 0, wedges = 0, loose = 0;
-  double total = 0, places = 0, wedge_bits = 0, positions = 0, rest = 0, draco7 = 0, draco10 = 0;
+  double total = 0, places = 0, wedge_bits = 0, loose_bits = 0, positions = 0, rest = 0, draco7 = 0, draco10 = 0;
   std::vector<std::pair<std::string, double>> attributes;
 
   void add(const std::string& name, double bits) {
@@ -227,6 +228,7 @@ void add_mesh(const std::string& name, const Mesh& mesh, double rounds, int bits
   sum.total += 8 * static_cast<double>(stream->bytes.size());
   sum.places += s.places;
   sum.wedge_bits += s.wedges;
+  sum.loose_bits += s.loose;
   sum.positions += s.positions;
   sum.rest += s.base + s.errors + s.header;
   for (std::size_t a = 0; a < s.attributes.size(); ++a) sum.add(mesh.attributes[a].name, s.attributes[a]);
@@ -238,8 +240,8 @@ void print_scene(const std::string& name, const std::vector<Mesh>& meshes, doubl
   SceneBits sum;
   for (const Mesh& mesh : meshes) add_mesh(name, mesh, rounds, bits, sum);
   const double n = sum.vertices;
-  std::printf("| %s | %.0f / %.0f | **%.2f** | %.2f | %.2f | %.2f | %.2f | ", name.c_str(), n, sum.wedges,
-              sum.total / n, sum.places / n, sum.wedge_bits / n, sum.positions / n, sum.rest / n);
+  std::printf("| %s | %.0f / %.0f | **%.2f** | %.2f | %.2f | %.2f | %.2f | %.2f | ", name.c_str(), n, sum.wedges,
+              sum.total / n, sum.places / n, sum.wedge_bits / n, sum.loose_bits / n, sum.positions / n, sum.rest / n);
   for (const auto& [attribute, attribute_bits] : sum.attributes)
     std::printf("%s %.2f ", attribute.c_str(), attribute_bits / n);
   std::printf("| %.2f | %.2f | **%.3f** |\n", sum.draco7 / n, sum.draco10 / n, sum.total / sum.draco7);
@@ -251,8 +253,9 @@ void print_scenes(const std::vector<std::filesystem::path>& paths, double rounds
       "\nScenes: positions of %d bits, normals of 10, other floats of 12; dense_rounds = %g; bits for each vertex\n\n",
       bits, rounds);
   std::printf(
-      "| | vertices / wedges | stream | places | wedges | positions | rest | attributes | Draco cl 7 | cl 10 | stream "
-      "over cl 7 |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| | vertices / wedges | stream | places | wedges | loose | positions | rest | attributes | Draco cl 7 | cl 10 | "
+      "stream "
+      "over cl 7 |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& path : paths) {
     const std::string name = path.stem().string();
     print_scene(name, scene_meshes(path, {"NORMAL", "TEXCOORD_0"}), rounds, bits);

@@ -1,24 +1,19 @@
 #include "codec/attribute_coder.h"
 
 #include <algorithm>
+#include <string>
+#include <string_view>
 
 #include "codec/direction_coder.h"
 #include "codec/element_coders.h"
+#include "codec/ring.h"
+#include "codec/texture_coder.h"
+#include "codec/weight_coder.h"
 
 namespace lodestone::detail {
 namespace {
 
-std::unique_ptr<ElementCoder> make_coder(const AttributeSpec& spec) {
-  switch (spec.coding) {
-    case AttributeCoding::Directions:
-      return std::make_unique<DirectionCoder>(spec);
-    case AttributeCoding::Texture:
-    case AttributeCoding::Numbers:
-    case AttributeCoding::kCount:
-      break;
-  }
-  return std::make_unique<PlainElementCoder>(spec);
-}
+constexpr std::string_view kWeights = "WEIGHTS_", kJoints = "JOINTS_";
 
 }  // namespace
 
@@ -37,22 +32,91 @@ bool ElementCoder::code_same(BitCoder& coder, const ElementPlace& place, std::sp
   return false;
 }
 
+bool ElementCoder::are_same(Index a, Index b) const {
+  const std::span<const std::int32_t> x = numbers(a), y = numbers(b);
+  return std::equal(x.begin(), x.end(), y.begin());
+}
+
+/// Where wedges of the ring have the same, so may this one: what most of them have.
+bool ElementCoder::code_common(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers,
+                               bool is_writer) {
+  std::uint32_t most = 1;
+  Index common = 0;
+  for (std::size_t i = 0; i + most < place.ring.size(); ++i) {
+    std::uint32_t count = 1;
+    for (std::size_t j = i + 1; j < place.ring.size(); ++j) count += are_same(place.ring[i], place.ring[j]) ? 1 : 0;
+    if (count > most) most = count, common = place.ring[i];
+  }
+  if (most < 2) return false;
+  const std::span<const std::int32_t> others = this->numbers(common);
+  const bool is_common = is_writer && std::equal(others.begin(), others.end(), numbers.begin());
+  const auto size = static_cast<std::uint32_t>(place.ring.size());
+  const std::array<std::uint32_t, 1> context = {
+      (std::min(most - 2, kCommon - 1) * kCommon + std::min(size - most, kCommon - 1)) * 2 + (was_common_ ? 1 : 0)};
+  was_common_ = common_.code(coder, is_common ? 1 : 0, context, 0) != 0;
+  if (was_common_) std::copy(others.begin(), others.end(), numbers.begin());
+  return was_common_;
+}
+
 bool ElementCoder::code(BitCoder& coder, const ElementPlace& place, std::span<const std::int32_t> given) {
   const std::span<std::int32_t> numbers =
       std::span(numbers_).subspan(std::size_t{place.wedge} * spec_.component_count, spec_.component_count);
   std::copy(given.begin(), given.end(), numbers.begin());
-  if (code_same(coder, place, numbers, !given.empty())) return pass(place), true;
+  const bool is_writer = !given.empty();
+  if (code_same(coder, place, numbers, is_writer) || code_common(coder, place, numbers, is_writer))
+    return pass(place), true;
   return code_element(coder, place, numbers);
 }
 
-AttributeCoder::AttributeCoder(std::span<const AttributeSpec> specs) {
-  for (const AttributeSpec& spec : specs) coders_.push_back(make_coder(spec));
+AttributeCoder::AttributeCoder(std::span<const AttributeSpec> specs) : skin_(std::make_unique<SkinSets>()) {
+  for (const AttributeSpec& spec : specs) add_coder(spec);
+  find_joints();
+  for (const bool weights : {false, true})
+    for (std::size_t i = 0; i < coders_.size(); ++i)
+      if ((coders_[i]->spec().coding == AttributeCoding::Weights) == weights) order_.push_back(i);
   bits.assign(specs.size(), 0);
+}
+
+AttributeCoder::~AttributeCoder() = default;
+
+void AttributeCoder::add_coder(const AttributeSpec& spec) {
+  switch (spec.coding) {
+    case AttributeCoding::Directions:
+      has_directions_ = true;
+      coders_.push_back(std::make_unique<DirectionCoder>(spec));
+      return;
+    case AttributeCoding::Texture:
+      coders_.push_back(std::make_unique<TextureCoder>(spec));
+      return;
+    case AttributeCoding::Weights:
+      coders_.push_back(std::make_unique<WeightCoder>(spec, *skin_, skin_->sets.size()));
+      skin_->sets.push_back({nullptr, coders_.back().get()});
+      return;
+    case AttributeCoding::Numbers:
+    case AttributeCoding::kCount:
+      break;
+  }
+  coders_.push_back(std::make_unique<PlainElementCoder>(spec));
+}
+
+/// Finds the joints of each set of weights, by their names.
+void AttributeCoder::find_joints() {
+  for (SkinSets::Set& set : skin_->sets) {
+    const AttributeSpec& weights = set.weights->spec();
+    if (!weights.name.starts_with(kWeights)) continue;
+    for (const auto& coder : coders_) {
+      const AttributeSpec& spec = coder->spec();
+      if (spec.coding == AttributeCoding::Numbers && spec.component_count == weights.component_count &&
+          spec.name.starts_with(kJoints) &&
+          spec.name.compare(kJoints.size(), std::string::npos, weights.name, kWeights.size()) == 0)
+        set.joints = coder.get();
+    }
+  }
 }
 
 bool AttributeCoder::code_wedge(BitCoder& coder, const ElementPlace& place,
                                 std::span<const std::vector<std::int32_t>> given, Index first_given) {
-  for (std::size_t i = 0; i < coders_.size(); ++i) {
+  for (const std::size_t i : order_) {
     const std::size_t size = coders_[i]->spec().component_count;
     std::span<const std::int32_t> numbers;
     if (!given.empty()) numbers = std::span(given[i]).subspan((place.wedge - first_given) * size, size);
@@ -63,14 +127,22 @@ bool AttributeCoder::code_wedge(BitCoder& coder, const ElementPlace& place,
   return true;
 }
 
-void AttributeCoder::resize(std::size_t wedge_count) {
-  for (auto& element : coders_) element->resize(wedge_count);
+void AttributeCoder::look(const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions) {
+  for (auto& element : coders_) element->resize(wedges.size());
+  if (!has_directions_) return;
+  normals_.assign(wedges.size(), {});
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    const Vec3i& p = positions[mesh.from(3 * face)];
+    const Vec3i n = cross(positions[mesh.from(3 * face + 1)] - p, positions[mesh.from(3 * face + 2)] - p);
+    for (Index c = 3 * face; c < 3 * face + 3; ++c) normals_[mesh.wedge(c)] = normals_[mesh.wedge(c)] + n;
+  }
+  for (Vec3i& n : normals_) n = unit(n);
 }
 
 bool AttributeCoder::code_base(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges,
                                std::span<const Vec3i> positions, std::span<const std::vector<std::int32_t>> given) {
   if (coders_.empty()) return true;
-  resize(wedges.size());
+  look(mesh, wedges, positions);
   std::vector<Index> beside(wedges.size(), kNoIndex);  // by wedge: the last before it that shares a face
   for (Index c = 0; c < mesh.corners().size(); ++c)
     for (const Index other : {next_corner(c), previous_corner(c)}) {
@@ -79,7 +151,7 @@ bool AttributeCoder::code_base(BitCoder& coder, const PatchMesh& mesh, const Wed
     }
   for (Index w = 0; w < wedges.size(); ++w) {
     const Index near = beside[w] != kNoIndex ? beside[w] : w > 0 ? w - 1 : kNoIndex;
-    if (!code_wedge(coder, {mesh, wedges, positions, w, {}, {}, near}, given, 0)) return false;
+    if (!code_wedge(coder, {mesh, wedges, positions, normals_, w, {}, {}, near}, given, 0)) return false;
   }
   return true;
 }
@@ -98,7 +170,8 @@ bool AttributeCoder::code_vertex(BitCoder& coder, const PatchMesh& mesh, const W
         if (std::find(ring_.begin(), ring_.end(), other) == ring_.end()) ring_.push_back(other);
     }
     const Index near = w > 0 ? w - 1 : kNoIndex;
-    if (!code_wedge(coder, {mesh, wedges, positions, w, faces_, ring_, near}, given, first_given)) return false;
+    if (!code_wedge(coder, {mesh, wedges, positions, normals_, w, faces_, ring_, near}, given, first_given))
+      return false;
   }
   return true;
 }

@@ -21,6 +21,7 @@ struct ElementPlace {
   const PatchMesh& mesh;
   const WedgeTable& wedges;
   std::span<const Vec3i> positions;
+  std::span<const Vec3i> normals;  ///< by wedge: unit; of the faces that have it, by area
   Index wedge = 0;
   std::span<const Index> faces;  ///< those that have the wedge as their first; in order, if it has a ring
   std::span<const Index> ring;   ///< wedges around it, each once
@@ -54,24 +55,32 @@ class ElementCoder {
 
  private:
   bool code_same(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers, bool is_writer);
+  bool code_common(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers, bool is_writer);
+  bool are_same(Index a, Index b) const;
 
   AttributeSpec spec_;
   std::vector<std::int32_t> numbers_;
   BitMixer same_{std::array<std::uint32_t, 1>{kSame}, 1};
+  BitMixer common_{std::array<std::uint32_t, 1>{kCommon * kCommon * 2}, 1};
+  bool was_common_ = false;
 
   static constexpr std::uint32_t kSame = 4;
+  static constexpr std::uint32_t kCommon = 6;
 };
+
+struct SkinSets;
 
 /// Codes the attributes of a level's wedges.
 class AttributeCoder {
  public:
   explicit AttributeCoder(std::span<const AttributeSpec> specs);
+  ~AttributeCoder();
 
   std::size_t count() const { return coders_.size(); }
   const ElementCoder& attribute(std::size_t i) const { return *coders_[i]; }
 
-  /// Makes room for as many wedges.
-  void resize(std::size_t wedge_count);
+  /// Makes room for all wedges of a level, and looks at its faces.
+  void look(const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions);
   /// Codes all wedges of a base mesh. `given`: by attribute, their numbers, of a writer; a reader gives none.
   bool code_base(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions,
                  std::span<const std::vector<std::int32_t>> given);
@@ -87,7 +96,14 @@ class AttributeCoder {
   bool code_wedge(BitCoder& coder, const ElementPlace& place, std::span<const std::vector<std::int32_t>> given,
                   Index first_given);
 
+  void add_coder(const AttributeSpec& spec);
+  void find_joints();
+
+  std::unique_ptr<SkinSets> skin_;  // at one address as long as its coders live
   std::vector<std::unique_ptr<ElementCoder>> coders_;
+  std::vector<std::size_t> order_;  // in which attributes are coded: weights come last
+  bool has_directions_ = false;
+  std::vector<Vec3i> normals_;
   std::vector<Index> faces_, ring_;
 };
 

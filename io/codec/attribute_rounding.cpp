@@ -86,8 +86,6 @@ void round_direction(const float* values, std::int64_t size, std::int32_t* numbe
   numbers[top] = static_cast<std::int32_t>(values[top] < 0 ? -rest : rest);
 }
 
-}  // namespace
-
 AttributeSpec choose_spec(const Attribute& attribute, const CompactOptions& options) {
   AttributeSpec spec;
   spec.name = attribute.name;
@@ -111,7 +109,7 @@ AttributeSpec choose_spec(const Attribute& attribute, const CompactOptions& opti
   return spec;
 }
 
-std::vector<std::int32_t> rounded(const Attribute& attribute, const AttributeSpec& spec) {
+std::vector<std::int32_t> rounded_alone(const Attribute& attribute, const AttributeSpec& spec) {
   const std::size_t size = spec.component_count;
   const std::size_t count = attribute.data.size() / component_bytes(spec.type);
   std::vector<std::int32_t> numbers(count);
@@ -134,6 +132,89 @@ std::vector<std::int32_t> rounded(const Attribute& attribute, const AttributeSpe
     const double steps = range > 0 && !std::isnan(values[i]) ? (static_cast<double>(values[i]) - low) / range * top : 0;
     numbers[i] = static_cast<std::int32_t>(std::floor(std::clamp(steps, 0.0, top) + 0.5));
   }
+  return numbers;
+}
+
+bool is_weights(const Attribute& attribute) {
+  return attribute.name.starts_with("WEIGHTS_") && attribute.type == ComponentType::Float32;
+}
+
+/// Whether the weights of each wedge are not negative and add up to 1, over all attributes of them.
+bool add_up(std::span<const Attribute> attributes) {
+  std::vector<double> sums;
+  for (const Attribute& attribute : attributes) {
+    if (!is_weights(attribute)) continue;
+    const std::vector<float> values = attribute_values(attribute);
+    sums.resize(values.size() / attribute.component_count, 0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!(values[i] >= 0)) return false;
+      sums[i / attribute.component_count] += static_cast<double>(values[i]);
+    }
+  }
+  return std::all_of(sums.begin(), sums.end(), [](double sum) { return std::abs(sum - 1) < kUnitTolerance; });
+}
+
+/// Rounds weights down, and those up that lie highest above, as many as are missing.
+void round_weights(std::span<const Attribute> attributes, std::span<const AttributeSpec> specs,
+                   std::vector<std::vector<std::int32_t>>& numbers) {
+  struct Share {
+    std::size_t attribute, at;
+    double above;
+  };
+  std::vector<std::vector<float>> values(attributes.size());
+  std::size_t wedge_count = 0;
+  for (std::size_t a = 0; a < attributes.size(); ++a) {
+    if (specs[a].coding != AttributeCoding::Weights) continue;
+    values[a] = attribute_values(attributes[a]);
+    numbers[a].resize(values[a].size());
+    wedge_count = values[a].size() / specs[a].component_count;
+  }
+  std::vector<Share> shares;
+  for (std::size_t w = 0; w < wedge_count; ++w) {
+    shares.clear();
+    double sum = 0;
+    std::int64_t rest = 0;
+    for (std::size_t a = 0; a < attributes.size(); ++a)
+      for (std::size_t c = 0; c < specs[a].component_count && !values[a].empty(); ++c) {
+        shares.push_back({a, w * specs[a].component_count + c, 0});
+        sum += static_cast<double>(values[a][shares.back().at]);
+        rest = specs[a].highest();
+      }
+    const double top = static_cast<double>(rest);
+    for (Share& share : shares) {
+      const double exact = static_cast<double>(values[share.attribute][share.at]) / sum * top;
+      const auto below = static_cast<std::int32_t>(std::floor(exact));
+      numbers[share.attribute][share.at] = below;
+      share.above = exact - static_cast<double>(below);
+      rest -= below;
+    }
+    std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.above > b.above; });
+    for (std::size_t i = 0; i < shares.size() && rest > 0; ++i, --rest) ++numbers[shares[i].attribute][shares[i].at];
+  }
+}
+
+}  // namespace
+
+std::vector<AttributeSpec> choose_specs(std::span<const Attribute> attributes, const CompactOptions& options) {
+  const bool has_weights = add_up(attributes);
+  std::vector<AttributeSpec> specs;
+  for (const Attribute& attribute : attributes) {
+    AttributeSpec& spec = specs.emplace_back(choose_spec(attribute, options));
+    if (!has_weights || !is_weights(attribute)) continue;
+    spec.coding = AttributeCoding::Weights;
+    spec.bits = static_cast<std::uint8_t>(options.weight_bits);
+    spec.low.assign(spec.component_count, 0);
+    spec.range = 1;
+  }
+  return specs;
+}
+
+std::vector<std::vector<std::int32_t>> rounded(std::span<const Attribute> attributes,
+                                               std::span<const AttributeSpec> specs) {
+  std::vector<std::vector<std::int32_t>> numbers(attributes.size());
+  for (std::size_t a = 0; a < attributes.size(); ++a)
+    if (specs[a].coding != AttributeCoding::Weights) numbers[a] = rounded_alone(attributes[a], specs[a]);
+  round_weights(attributes, specs, numbers);
   return numbers;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <lodestone/core/mesh.h>
@@ -10,10 +11,11 @@
 
 namespace lodestone::detail {
 
-/// Chooses how an attribute is coded, and its grid.
-AttributeSpec choose_spec(const Attribute& attribute, const CompactOptions& options);
+/// Chooses how attributes are coded, and their grids.
+std::vector<AttributeSpec> choose_specs(std::span<const Attribute> attributes, const CompactOptions& options);
 
-/// Returns the numbers of all its elements.
-std::vector<std::int32_t> rounded(const Attribute& attribute, const AttributeSpec& spec);
+/// Returns the numbers of all elements, by attribute.
+std::vector<std::vector<std::int32_t>> rounded(std::span<const Attribute> attributes,
+                                               std::span<const AttributeSpec> specs);
 
 }  // namespace lodestone::detail

@@ -131,7 +131,8 @@ Result<AttributeSpec> read_attribute(HeaderReader& in) {
     return wrong(text("has ", int{spec.bits}, " bits"));
   const int components = spec.component_count;
   if ((spec.coding == AttributeCoding::Directions && (!is_float || components < 3 || components > 4)) ||
-      (spec.coding == AttributeCoding::Texture && components != 2))
+      (spec.coding == AttributeCoding::Texture && components != 2) ||
+      (spec.coding == AttributeCoding::Weights && !is_float))
     return wrong(text("has ", components, " components for coding ", int{coding}));
   if (!is_float || spec.coding == AttributeCoding::Directions) return spec;
   for (int c = 0; c < components; ++c) spec.low.push_back(in.get<float>());

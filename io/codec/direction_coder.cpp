@@ -19,29 +19,26 @@ int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(
 std::uint32_t hint(int value, int low, int step) { return bucket(value, low, step, NumberCoder::kHints); }
 std::int64_t length_of(const Vec3i& v) { return square_root(squared(v)); }
 
-/// Normals of the faces around a wedge.
+/// Normals of the faces around a wedge, with several weights: unit vectors.
 struct Normals {
-  Vec3i by_area;  // unit, as the others
-  Vec3i even;
-  std::int64_t spread = 0;  // mean distance of the faces' from the mean
+  Vec3i even, by_angle;
+  std::int64_t spread = 0;  // mean distance of the faces' from that by area
 };
 
 Normals normals_of(const ElementPlace& place) {
   Normals result;
-  Vec3i area, even;
-  const auto normal = [&](Index face) {
-    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
-    return cross(place.positions[place.mesh.from(3 * face + 1)] - p,
-                 place.positions[place.mesh.from(3 * face + 2)] - p);
-  };
+  Vec3i even, by_angle;
   for (const Index face : place.faces) {
-    const Vec3i n = normal(face);
-    area = area + n;
-    even = even + unit(n);
+    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
+    const Vec3i a = place.positions[place.mesh.from(3 * face + 1)] - p;
+    const Vec3i b = place.positions[place.mesh.from(3 * face + 2)] - p;
+    const Vec3i n = unit(cross(a, b));
+    even = even + n;
+    by_angle = by_angle + n * (length_of(unit(a) - unit(b)) >> 4);  // nearly as the angle
+    result.spread += length_of(n - place.normals[place.wedge]);
   }
-  result.by_area = unit(area);
   result.even = unit(even);
-  for (const Index face : place.faces) result.spread += length_of(unit(normal(face)) - result.by_area);
+  result.by_angle = unit(by_angle);
   result.spread /= std::max<std::int64_t>(1, static_cast<std::int64_t>(place.faces.size()));
   return result;
 }
@@ -49,7 +46,7 @@ Normals normals_of(const ElementPlace& place) {
 }  // namespace
 
 DirectionCoder::DirectionCoder(const AttributeSpec& spec)
-    : ElementCoder(spec), pulls_({0, 0}, 1 << 17), size_({0, kHalf, kQuarter, kQuarter}, 1 << 14) {}
+    : ElementCoder(spec), pulls_({0, 0, 0, 0}, 1 << 17), size_({0, kHalf, kQuarter, kQuarter}, 1 << 14) {}
 
 Vec3i DirectionCoder::direction(Index wedge) const {
   return unit({number(wedge, 0), number(wedge, 1), number(wedge, 2)});
@@ -122,33 +119,42 @@ bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, st
     return code_point(coder, near, 16 * 12, 1, numbers);
   }
   const Normals normals = normals_of(place);
+  const Vec3i& own = place.normals[place.wedge];
+  const auto count = static_cast<std::int64_t>(place.ring.size());
   const Vec3i around = mean_of_ring(place);
+  Vec3i surface_around;
+  std::int64_t miss_sum = 0, turn = 0, off = 0;
+  for (const Index other : place.ring) {
+    const Vec3i there = direction(other);
+    surface_around = surface_around + place.normals[other];
+    miss_sum += other < misses_.size() ? misses_[other] : kUsualMiss;
+    turn += length_of(there - around);
+    off += length_of(there - place.normals[other]);
+  }
+  surface_around = unit(surface_around);
   std::array<Pulls::Features, 3> pulls{};
-  Vec3i expected = normals.by_area;
+  Vec3i expected = own;
   for (int c = 0; c < 3; ++c) {
     Pulls::Features& f = pulls[static_cast<std::size_t>(c)];
-    f = {(around[c] - normals.by_area[c]) / 4, (normals.even[c] - normals.by_area[c]) / 4};
+    f = {(around[c] - own[c]) / 4, (normals.even[c] - own[c]) / 4, (normals.by_angle[c] - own[c]) / 4,
+         (surface_around[c] - own[c]) / 4};
     expected[c] += 4 * pulls_.predict(f);
   }
   expected = unit(expected);
-  std::int64_t miss_sum = 0;
-  for (const Index other : place.ring) miss_sum += other < misses_.size() ? misses_[other] : kUsualMiss;
-  const auto miss_around = static_cast<int>(miss_sum / static_cast<std::int64_t>(place.ring.size()));
   const int log_one = 64;
-  std::int64_t turn = 0;
-  for (const Index other : place.ring) turn += length_of(direction(other) - around);
-  turn /= static_cast<std::int64_t>(place.ring.size());
   const Traits::Features traits = {log_one,
-                                   miss_around,
-                                   log_of(length_of(around - normals.by_area)),
+                                   miss_sum / count,
+                                   log_of(length_of(around - own)),
                                    log_of(normals.spread),
-                                   log_of(turn),
-                                   log_of(length_of(normals.even - normals.by_area))};
+                                   log_of(turn / count),
+                                   log_of(length_of(normals.even - own)),
+                                   log_of(off / count),
+                                   log_of(length_of(surface_around - own))};
   const auto log_error = static_cast<int>(std::clamp<std::int64_t>(size_.predict(traits), 16, 16 * 14));
   if (!code_point(coder, expected, log_error, 0, numbers)) return false;
 
   const Vec3i found = unit({numbers[0], numbers[1], numbers[2]});
-  for (int c = 0; c < 3; ++c) pulls_.add(pulls[static_cast<std::size_t>(c)], (found[c] - normals.by_area[c]) / 4);
+  for (int c = 0; c < 3; ++c) pulls_.add(pulls[static_cast<std::size_t>(c)], (found[c] - own[c]) / 4);
   pulls_.end_sample();
   const int miss = log_of(length_of(found - expected) + (1 << kUnitBits) / (4 * spec().highest()));
   size_.add(traits, miss);

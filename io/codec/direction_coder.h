@@ -19,8 +19,8 @@ class DirectionCoder final : public ElementCoder {
   void pass(const ElementPlace& place) override;
 
  private:
-  static constexpr int kPulls = 2;
-  static constexpr int kTraits = 6;
+  static constexpr int kPulls = 4;
+  static constexpr int kTraits = 8;
   using Pulls = OnlineFit<kPulls>;
   using Traits = OnlineFit<kTraits>;
 

@@ -34,7 +34,7 @@ Result<void> check(const ProgressiveMesh& mesh, const CompactOptions& options) {
     return wrong(text("grid of ", options.grid_bits, " bits is not of ", kLeastGridBits, " to ", kMostGridBits));
   if (options.grid && !(options.grid->range > 0 && std::isfinite(options.grid->range)))
     return wrong("grid has no size");
-  for (const int bits : {options.normal_bits, options.texture_bits, options.other_bits})
+  for (const int bits : {options.normal_bits, options.texture_bits, options.weight_bits, options.other_bits})
     if (bits < kLeastAttributeBits || bits > kMostAttributeBits)
       return wrong(text("attributes of ", bits, " bits are not of ", kLeastAttributeBits, " to ", kMostAttributeBits));
   if (mesh.groups.empty()) return wrong("mesh has no face group");
@@ -78,18 +78,12 @@ LevelLimits limits_of(const ProgressiveMesh& mesh, const CompactOptions& options
   return limits;
 }
 
-std::vector<AttributeSpec> specs_of(const ProgressiveMesh& mesh, const CompactOptions& options) {
-  std::vector<AttributeSpec> specs;
-  for (const Attribute& attribute : mesh.attributes) specs.push_back(choose_spec(attribute, options));
-  return specs;
-}
-
 /// Encodes a progressive mesh. Pre: `check` found nothing.
 class CompactEncoder {
  public:
   CompactEncoder(const ProgressiveMesh& mesh, const CompactOptions& options)
       : mesh_(mesh),
-        specs_(specs_of(mesh, options)),
+        specs_(choose_specs(mesh.attributes, options)),
         levels_(limits_of(mesh, options), specs_),
         coded_(mesh),
         planner_(mesh, coded_, levels_.mesh()) {
@@ -98,7 +92,7 @@ class CompactEncoder {
     header_.attributes = specs_;
     for (const FaceGroup& group : mesh.groups)
       header_.groups.push_back({group.material, static_cast<Index>(group.base_corners.size() / 3)});
-    for (std::size_t a = 0; a < specs_.size(); ++a) numbers_.push_back(rounded(mesh.attributes[a], specs_[a]));
+    numbers_ = rounded(mesh.attributes, specs_);
     deviation_ = largest_from(mesh.deviation);
     curvature_ = largest_from(mesh.curvature_error);
     result_.sizes.attributes.assign(specs_.size(), 0);
@@ -407,7 +401,7 @@ Result<void> CompactEncoder::write_round(Index first, Index end) {
   result_.loose_count += loose;
   if (!levels_.code_loose_count(coder_, loose)) return wrong();
   for (const Index record : planner_.loose()) LODESTONE_CHECK(write_loose(record));
-  spend(result_.sizes.wedges);
+  spend(result_.sizes.loose);
   if (!write_attributes(false)) return wrong();
   write_errors(end);
   ++chunk_.round_count;
@@ -452,7 +446,8 @@ Result<CompactStream> CompactEncoder::run() {
   append_bytes(result_.bytes, body_);
   CompactSizes& s = result_.sizes;
   s.attributes = levels_.attributes().bits;
-  s.header = 8 * static_cast<double>(result_.bytes.size()) - s.base - s.places - s.positions - s.wedges - s.errors;
+  s.header =
+      8 * static_cast<double>(result_.bytes.size()) - s.base - s.places - s.positions - s.wedges - s.loose - s.errors;
   for (const double bits : s.attributes) s.header -= bits;
   result_.vertex_numbers = std::move(coded_.vertex);
   result_.wedge_numbers = std::move(coded_.wedge);

@@ -244,7 +244,7 @@ bool LevelCoder::code_attributes(BitCoder& coder, std::span<const std::vector<st
   const Index first_wedge = vertices_done_ < vertices_.count()
                                 ? wedges_.begin(static_cast<Index>(first + vertices_done_))
                                 : static_cast<Index>(wedges_.size());
-  attributes_.resize(wedges_.size());
+  if (vertices_done_ < vertices_.count()) attributes_.look(mesh_, wedges_, positions_);
   for (; vertices_done_ < vertices_.count(); ++vertices_done_) {
     vertex_faces_.clear();
     for (const Index star : vertices_.stars_of(vertices_done_)) {

@@ -91,6 +91,7 @@ double reach_of(const Attribute& attribute, const CompactOptions& options) {
   }
   const bool is_direction = attribute.name == "NORMAL" || attribute.name == "TANGENT";
   if (is_direction) return 2.0 / ((1 << (options.normal_bits - 1)) - 1);
+  if (attribute.name.starts_with("WEIGHTS_")) return 1.001 / ((1 << options.weight_bits) - 1) + 1e-3;
   const int bits = attribute.name.starts_with("TEXCOORD_") ? options.texture_bits : options.other_bits;
   return range / 2 / ((1 << bits) - 1) * 1.0001 + 1e-6;
 }
@@ -225,6 +226,82 @@ TEST_CASE("every progressive mesh can be encoded: seams, groups, attributes, bor
   }
 }
 
+TEST_CASE("weights add up to one, in one set or two") {
+  TriangleSoup one = skinned_cylinder(12, 9);
+  TriangleSoup two = one;
+  for (const Attribute& given : one.attributes) {
+    if (!given.name.starts_with("WEIGHTS_") && !given.name.starts_with("JOINTS_")) continue;
+    Attribute& second = two.attributes.emplace_back(given);
+    second.name.back() = '1';
+  }
+  for (Attribute& attribute : two.attributes)
+    if (attribute.name.starts_with("WEIGHTS_")) {
+      std::vector<float> values = attribute_values(attribute);
+      for (float& value : values) value *= attribute.name.back() == '1' ? 0.25F : 0.75F;
+      std::memcpy(attribute.data.data(), values.data(), attribute.data.size());
+    }
+  for (const TriangleSoup& soup : {one, two}) {
+    const ProgressiveMesh mesh = progressive(soup);
+    const CompactStream stream = encoded(mesh);
+    const ProgressiveMesh coded = decoded(stream.bytes);
+    check_same(mesh, stream, coded, 12);
+    std::vector<double> sums(coded.wedge_vertex.size(), 0);
+    for (const Attribute& attribute : coded.attributes) {
+      if (!attribute.name.starts_with("WEIGHTS_")) continue;
+      const std::vector<float> values = attribute_values(attribute);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        sums[i / attribute.component_count] += static_cast<double>(values[i]);
+    }
+    for (const double sum : sums) CHECK(std::abs(sum - 1) < 1e-6);
+  }
+}
+
+TEST_CASE("attributes of every type come back, what is not finite or no unit vector included") {
+  TriangleSoup soup = terrain(9, 3);
+  const std::size_t count = soup.positions.size();
+  Random random(5);
+  const auto add = [&](const char* name, ComponentType type, int components, auto value) {
+    Attribute attribute{name, type, static_cast<std::uint8_t>(components), false, {}};
+    for (std::size_t i = 0; i < count * static_cast<std::size_t>(components); ++i) {
+      const auto one = value(i);
+      const auto* bytes = reinterpret_cast<const std::byte*>(&one);
+      attribute.data.insert(attribute.data.end(), bytes, bytes + sizeof one);
+    }
+    soup.attributes.push_back(std::move(attribute));
+  };
+  const auto any = [&](auto zero) {
+    return [&random, zero](std::size_t) { return static_cast<decltype(zero)>(random.below(1U << 31U)); };
+  };
+  add("_A", ComponentType::Int8, 3, any(std::int8_t{}));
+  add("_B", ComponentType::UInt8, 1, any(std::uint8_t{}));
+  add("_C", ComponentType::Int16, 4, any(std::int16_t{}));
+  add("TEXCOORD_0", ComponentType::UInt16, 2, any(std::uint16_t{}));
+  add("_D", ComponentType::UInt32, 2, any(std::uint32_t{}));
+  add("_E", ComponentType::UInt32, 1, [](std::size_t i) { return std::uint32_t{i % 2 != 0 ? 0xFFFFFFFFU : 0U}; });
+  add("_F", ComponentType::Float32, 16, [&](std::size_t i) { return static_cast<float>(i % 7); });
+  add("NORMAL", ComponentType::Float32, 3, [](std::size_t i) { return i % 5 == 0 ? 0.0F : 2.0F; });
+  const ProgressiveMesh mesh = progressive(soup);
+  const CompactStream stream = encoded(mesh, 14);
+  const ProgressiveMesh coded = decoded(stream.bytes);
+  REQUIRE(coded.attributes.size() == mesh.attributes.size());
+  ProgressiveMesh known = mesh, found = coded;
+  for (ProgressiveMesh* each : {&known, &found})
+    std::erase_if(each->attributes, [](const Attribute& attribute) { return attribute.name == "NORMAL"; });
+  check_attributes(known, stream, found, {});
+
+  // Not finite: the least value of its component.
+  TriangleSoup odd = terrain(4, 3);
+  Attribute broken{"COLOR_0", ComponentType::Float32, 1, false, {}};
+  for (std::size_t i = 0; i < odd.positions.size(); ++i) {
+    const float value = i % 3 == 0 ? NAN : i % 3 == 1 ? HUGE_VALF : 0.5F;
+    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+    broken.data.insert(broken.data.end(), bytes, bytes + sizeof value);
+  }
+  odd.attributes.push_back(broken);
+  for (const float value : attribute_values(decoded(encoded(progressive(odd)).bytes).attributes[0]))
+    CHECK(std::isfinite(value));
+}
+
 TEST_CASE("seams and materials are told by patches, not face by face") {
   for (const NamedShape& shape :
        {NamedShape{"seam cube", seam_cube(6), true, {}}, NamedShape{"seam sphere", seam_sphere(16, 12), true, {}},
@@ -284,8 +361,8 @@ TEST_CASE("the meshes of real scenes come back with all their attributes") {
 TEST_CASE("the sizes of a compact stream's parts add up") {
   const CompactStream stream = encoded(progressive(icosphere(3, 0.05, 1)));
   const CompactSizes& s = stream.sizes;
-  for (const double part : {s.header, s.base, s.places, s.wedges, s.positions, s.errors}) CHECK(part > 0);
-  const double sum = s.header + s.base + s.places + s.wedges + s.positions + s.errors;
+  for (const double part : {s.header, s.base, s.places, s.wedges, s.loose, s.positions, s.errors}) CHECK(part > 0);
+  const double sum = s.header + s.base + s.places + s.wedges + s.loose + s.positions + s.errors;
   CHECK(std::abs(sum - 8.0 * static_cast<double>(stream.bytes.size())) < 1e-6);
 }
 

@@ -25,6 +25,7 @@ struct CompactOptions {
   std::optional<CompactGrid> grid;  ///< unset: the mesh's own box
   int normal_bits = 10;             ///< of directions (NORMAL, TANGENT) as points of an octahedron, 2 to 24
   int texture_bits = 12;            ///< of texture coordinates, over their box, 2 to 24
+  int weight_bits = 8;              ///< of joints' weights, 2 to 24; those of a wedge add up to 1
   int other_bits = 12;              ///< of other floats, over theirs, 2 to 24; integers stay as they are
 };
 
@@ -34,7 +35,8 @@ struct CompactSizes {
   double base = 0;       ///< the base mesh
   double places = 0;     ///< where vertices appear, and the triangulations there
   double positions = 0;  ///< where they lie
-  double wedges = 0;     ///< which wedges belong where, and what is told face by face
+  double wedges = 0;     ///< which wedges belong where
+  double loose = 0;      ///< what is told face by face, with its positions
   double errors = 0;
   std::vector<double> attributes;  ///< by attribute
 };
