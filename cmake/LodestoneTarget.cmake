@@ -6,6 +6,9 @@ function(lodestone_settings target)
   # Results are the same bytes everywhere: no fused multiply-add behind the source's back. Nobody looks at errno or the
   # exception flags of arithmetic, and loops vectorise only without them.
   target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math)
+  if(EMSCRIPTEN)  # lengths have 32 bits there, and what is longer cannot have arrived
+    target_compile_options(${target} PRIVATE -Wno-shorten-64-to-32)
+  endif()
   if(LODESTONE_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS

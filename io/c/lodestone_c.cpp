@@ -290,10 +290,11 @@ int32_t lodestone_cursor_seek(lodestone_cursor* cursor, uint32_t position) {
   });
 }
 
-int32_t lodestone_cursor_choose(lodestone_cursor* cursor, double deviation) {
+int32_t lodestone_cursor_choose(lodestone_cursor* cursor, double deviation, uint32_t* position) {
   return run(cursor, [&](lodestone_cursor& c) {
     if (!(deviation >= 0)) return invalid(text("deviation is ", deviation));
-    c.draw.seek(c.choice.choose(c.draw.position(), deviation));
+    if (position == nullptr) return invalid("position is null");
+    *position = c.choice.choose(c.draw.position(), deviation);
     return Outcome{};
   });
 }

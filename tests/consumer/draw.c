@@ -27,6 +27,12 @@ static lodestone_level level_of(lodestone_cursor* cursor) {
   return level;
 }
 
+static int go(lodestone_stream* stream, lodestone_cursor* cursor, double deviation) {
+  uint32_t position;
+  return check(stream, lodestone_cursor_choose(cursor, deviation, &position)) &&
+         check(stream, lodestone_cursor_seek(cursor, position));
+}
+
 /* Of the first group: a program would have a buffer for each. */
 static int upload(lodestone_stream* stream, lodestone_cursor* cursor, buffers* to) {
   lodestone_range wedges, ranges[16];
@@ -65,7 +71,7 @@ static int draw(FILE* file, lodestone_stream* stream, lodestone_cursor** cursor,
       if (code == LODESTONE_NOT_READY) continue;
       if (!check(stream, code)) return 0;
     }
-    if (!check(stream, lodestone_cursor_choose(*cursor, 0)) || !upload(stream, *cursor, to)) return 0;
+    if (!go(stream, *cursor, 0) || !upload(stream, *cursor, to)) return 0;
   }
   if (!check(stream, lodestone_stream_finish(stream)) || *cursor == NULL) return 0;
 
@@ -73,8 +79,7 @@ static int draw(FILE* file, lodestone_stream* stream, lodestone_cursor** cursor,
   const size_t bytes = to->uploaded_bytes;
   const lodestone_view far = {
       .size = sizeof far, .screen_height = 1080, .field_of_view = 0.8, .distance = 200, .scale = 1};
-  if (!check(stream, lodestone_cursor_choose(*cursor, 2 / lodestone_pixels_per_unit(&far)))) return 0;
-  if (!upload(stream, *cursor, to)) return 0;
+  if (!go(stream, *cursor, 2 / lodestone_pixels_per_unit(&far)) || !upload(stream, *cursor, to)) return 0;
   const uint32_t far_faces = level_of(*cursor).face_count;
   printf("%u faces; %zu bytes uploaded for all of it, from afar %zu more for %u faces\n", (unsigned)faces, bytes,
          to->uploaded_bytes - bytes, (unsigned)far_faces);

@@ -180,17 +180,20 @@ TEST_CASE("a cursor chooses as the C++ choice does, and views that are none are 
   auto level = sized<lodestone_level>();
   REQUIRE(lodestone_cursor_get_level(cursor, &level) == LODESTONE_OK);
   const float coarsest = level.deviation;
+  std::uint32_t position = 0;
   for (const float part : {0.5F, 0.1F, 0.3F}) {
-    REQUIRE(lodestone_cursor_choose(cursor, coarsest * part) == LODESTONE_OK);
+    REQUIRE(lodestone_cursor_choose(cursor, coarsest * part, &position) == LODESTONE_OK);
+    REQUIRE(lodestone_cursor_seek(cursor, position) == LODESTONE_OK);
     REQUIRE(lodestone_cursor_get_level(cursor, &level) == LODESTONE_OK);
+    CHECK(level.position == position);
     CHECK(level.deviation <= coarsest * part);
     CHECK(level.position > 0);
   }
-  CHECK(lodestone_cursor_choose(cursor, -1) == LODESTONE_INVALID_ARGUMENT);
-  CHECK(lodestone_cursor_choose(cursor, std::nan("")) == LODESTONE_INVALID_ARGUMENT);
-  CHECK(lodestone_cursor_choose(cursor, HUGE_VAL) == LODESTONE_OK);
-  REQUIRE(lodestone_cursor_get_level(cursor, &level) == LODESTONE_OK);
-  CHECK(level.position == 0);
+  CHECK(lodestone_cursor_choose(cursor, -1, &position) == LODESTONE_INVALID_ARGUMENT);
+  CHECK(lodestone_cursor_choose(cursor, std::nan(""), &position) == LODESTONE_INVALID_ARGUMENT);
+  CHECK(position > 0);
+  CHECK(lodestone_cursor_choose(cursor, HUGE_VAL, &position) == LODESTONE_OK);
+  CHECK(position == 0);
   lodestone_cursor_destroy(cursor);
   lodestone_stream_destroy(stream);
 
@@ -254,7 +257,8 @@ TEST_CASE("what is null, out of range or too small is refused, and nothing writt
   refused(lodestone_stream_get_state(stream, nullptr));
   refused(lodestone_cursor_create(stream, nullptr, nullptr));
   refused(lodestone_cursor_seek(nullptr, 0));
-  refused(lodestone_cursor_choose(nullptr, 0));
+  refused(lodestone_cursor_choose(nullptr, 0, nullptr));
+  refused(lodestone_cursor_choose(cursor, 0, nullptr));
   CHECK(std::string(lodestone_stream_message(nullptr)) != "");
   auto state = sized<lodestone_stream_state>();
   state.size -= 1;

@@ -17,9 +17,11 @@ export function readOptions() {
       program: { type: 'string' },
       models: { type: 'string', default: join(repository, '..', 'shared', 'data') },
       output: { type: 'string', default: 'build/web' },
+      package: { type: 'string', default: 'build/web-package/package' },
+      sums: { type: 'string' },
     },
   });
-  return { ...values, models: resolve(values.models), output: resolve(values.output), files: positionals };
+  return { ...values, models: resolve(values.models), output: resolve(values.output), package: resolve(values.package), files: positionals };
 }
 
 /** Ends a run that cannot happen on this machine: a failure where the project's own tests run, a remark elsewhere. */
@@ -42,12 +44,12 @@ export async function openBrowser() {
   return launchBrowser(path);
 }
 
-/** Serves the clients, the pages, `assets` and the models to a browser; `url` gives the address of a file of theirs. */
-export async function openSite({ output, models, assets = output }) {
+/** Serves the clients, the pages, `assets`, the models and `more` to a browser; `url` gives the address of a file of theirs. */
+export async function openSite({ output, models, assets = output, more = {} }) {
   const browser = await openBrowser();
   await mkdir(output, { recursive: true });
   const mounts = {
-    node_modules: join(here, 'node_modules'), pages: join(here, 'pages'), assets, models, demo: join(repository, 'demo'),
+    node_modules: join(here, 'node_modules'), pages: join(here, 'pages'), assets, models, demo: join(repository, 'demo'), ...more,
   };
   const server = await serve(mounts);
   return {

@@ -149,9 +149,9 @@ LODESTONE_API void lodestone_cursor_destroy(lodestone_cursor* cursor);
 
 /* Goes to a position, or to the last that there is so far. */
 LODESTONE_API int32_t lodestone_cursor_seek(lodestone_cursor* cursor, uint32_t position);
-/* Goes to the coarsest level so far that deviates by at most `deviation` (mesh units), unless the cursor's is fine
+/* Gives where to go for levels that deviate by at most `deviation` (mesh units): nowhere while the cursor's is fine
  * enough and not `slack` times too fine. */
-LODESTONE_API int32_t lodestone_cursor_choose(lodestone_cursor* cursor, double deviation);
+LODESTONE_API int32_t lodestone_cursor_choose(lodestone_cursor* cursor, double deviation, uint32_t* position);
 
 typedef struct lodestone_level {
   size_t size;           /* sizeof(lodestone_level) */

@@ -1,0 +1,100 @@
+export { LodestoneError } from './wasm.js';
+
+/** A part of a stream, and the level that the parts up to it lead to. */
+export interface Chunk {
+  /** Bytes of the stream: [byteBegin, byteEnd). */
+  byteBegin: number;
+  byteEnd: number;
+  position: number;
+  vertexCount: number;
+  faceCount: number;
+  /** How far that level lies from the whole mesh at most, in its units. */
+  deviation: number;
+}
+
+export interface Level {
+  /** How many vertices have been refined. */
+  position: number;
+  vertexCount: number;
+  /** Of the vertex buffers, the level uses the first so many. */
+  wedgeCount: number;
+  faceCount: number;
+  /** How far it lies from the whole mesh at most, in its units. */
+  deviation: number;
+}
+
+/** A vertex attribute, as glTF has them. */
+export interface AttributeFormat {
+  name: string;
+  componentType: 5120 | 5121 | 5122 | 5123 | 5125 | 5126;
+  componentCount: number;
+  normalized: boolean;
+}
+
+export type AttributeArray = Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array | Float32Array;
+
+/** What changed between a level and the one before it. */
+export interface Update {
+  level: Level;
+  /** Vertices that are new: [begin, end) of the vertex buffers. Those before stay as they are. */
+  wedges: { begin: number; end: number; positions: Float32Array; attributes: AttributeArray[] };
+  /** By group: how many entries of its index buffer are drawn, and those that are others now. */
+  groups: { count: number; ranges: { begin: number; corners: Uint32Array }[] }[];
+  /** Where they were asked for: of all wedges of the level. */
+  normals: Float32Array | null;
+  /** A box around all vertices that have arrived. */
+  low: [number, number, number];
+  high: [number, number, number];
+  /** Bytes that have arrived. */
+  bytes: number;
+  /** Chunks that have been decoded. */
+  chunksReady: number;
+}
+
+export interface StreamOptions {
+  /** What levels may deviate by at first: see `want`. Default 0. */
+  deviation?: number;
+  /** How many times finer than asked for a level may be before a coarser one is chosen. Default 1.3. */
+  slack?: number;
+  /** Work out smooth normals for each update, for streams without NORMAL. Default false. */
+  normals?: boolean;
+  /** What the mesh may take in memory. Default 1 GiB. */
+  mostBytes?: number;
+  /** Read and decode in a worker. Default true where there are workers. */
+  worker?: boolean;
+  /** Without a worker: the WebAssembly module, where it is not the one beside this file. */
+  module?: WebAssembly.Module | ArrayBuffer | ArrayBufferView | Response;
+  /** Without a worker: what fetches. */
+  fetch?: typeof fetch;
+}
+
+/**
+ * A mesh that arrives. Iterate over it to get updates, each with what changed since the one before:
+ * `for await (const update of stream)`. The next is made when it is asked for. Iteration ends when the stream is closed,
+ * and throws what it fails with; a stream whose bytes have all arrived goes on, since what is wanted may change.
+ */
+export class LodestoneStream implements AsyncIterable<Update> {
+  /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. Rejects with a LodestoneError. */
+  static open(url: string | URL, options?: StreamOptions): Promise<LodestoneStream>;
+
+  readonly chunks: Chunk[];
+  /** Each has an index buffer; `material` is a number of whoever made the stream. */
+  readonly groups: { material: number }[];
+  readonly attributes: AttributeFormat[];
+  /** Of the last update, as the next. */
+  readonly level: Level;
+  readonly low: [number, number, number];
+  readonly high: [number, number, number];
+  readonly bytes: number;
+  readonly chunksReady: number;
+  /** Whether all of it has been decoded. */
+  readonly complete: boolean;
+
+  /** Says how far levels may lie from the whole mesh, in its units; 0 is the whole. What is not needed is not fetched
+   * where the server answers range requests. */
+  want(deviation: number): void;
+  /** Returns the next update; undefined once the stream is closed. */
+  next(): Promise<Update | undefined>;
+  close(): void;
+  [Symbol.asyncIterator](): AsyncIterator<Update>;
+}

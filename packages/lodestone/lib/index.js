@@ -1,0 +1,150 @@
+// Streams of meshes for pages: LodestoneStream.open(url), then levels as they arrive.
+import { LodestoneError, load } from './wasm.js';
+import { Session } from './session.js';
+
+export { LodestoneError };
+
+/** The one worker of a page, made when it is needed; its streams by number. */
+const shared = { worker: undefined, streams: new Map(), last: 0 };
+
+function sharedWorker() {
+  if (shared.worker) return shared.worker;
+  shared.worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
+  shared.worker.onmessage = ({ data }) => shared.streams.get(data.id)?.(data);
+  shared.worker.onerror = (event) => {
+    for (const receive of shared.streams.values()) receive({ type: 'error', code: 'UNKNOWN', message: event.message ?? 'the worker failed' });
+    shared.streams.clear();
+    shared.worker = undefined;
+  };
+  return shared.worker;
+}
+
+/** Talks to a session in the worker. */
+function connectWorker(url, options, receive) {
+  const id = ++shared.last;
+  const worker = sharedWorker();
+  shared.streams.set(id, receive);
+  const send = (message) => worker.postMessage({ id, ...message });
+  const { deviation, slack, normals, mostBytes } = options; // what can be sent
+  send({ type: 'open', url, options: { deviation, slack, normals, mostBytes } });
+  return {
+    want: (deviation) => send({ type: 'want', deviation }),
+    acknowledge: () => send({ type: 'acknowledge' }),
+    close: () => {
+      send({ type: 'close' });
+      shared.streams.delete(id);
+    },
+  };
+}
+
+/** Has the session here, in this thread. */
+function connectHere(url, options, receive) {
+  let session;
+  let closed = false;
+  let wanted;
+  (async () => {
+    try {
+      const runtime = await load(options.module);
+      if (closed) return;
+      session = new Session(runtime, url, options, receive);
+      if (wanted !== undefined) session.want(wanted);
+      await session.run();
+    } catch (error) {
+      receive({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
+    }
+  })();
+  return {
+    want: (deviation) => {
+      wanted = deviation;
+      session?.want(deviation);
+    },
+    acknowledge: () => session?.acknowledge(),
+    close: () => {
+      closed = true;
+      session?.close();
+    },
+  };
+}
+
+/**
+ * A mesh that arrives. Iterate over it to get updates, each with what changed since the one before:
+ * `for await (const update of stream)`. The next is made when it is asked for. Iteration ends when the stream is closed,
+ * and throws what it fails with; a stream whose bytes have all arrived goes on, since what is wanted may change.
+ */
+export class LodestoneStream {
+  #session;
+  #queue = [];
+  #waiting; // for an update
+  #error;
+  #closed = false;
+  #owes = false; // an acknowledgement
+  #opened;
+
+  /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. */
+  static async open(url, options = {}) {
+    const stream = new LodestoneStream();
+    const base = globalThis.location?.href;
+    await stream.#start(String(new URL(url, base)), options);
+    return stream;
+  }
+
+  #start(url, { worker = typeof Worker !== 'undefined', ...options }) {
+    return new Promise((resolve, reject) => {
+      this.#opened = { resolve, reject };
+      this.#session = (worker ? connectWorker : connectHere)(url, options, (message) => this.#receive(message));
+    });
+  }
+
+  #receive(message) {
+    if (this.#closed) return;
+    if (message.type === 'open') {
+      const { chunks, groups, attributes, low, high } = message;
+      Object.assign(this, { chunks, groups, attributes, low, high });
+      this.#opened.resolve();
+    } else if (message.type === 'update') {
+      Object.assign(this, { level: message.level, low: message.low, high: message.high, bytes: message.bytes, chunksReady: message.chunksReady });
+      this.#queue.push(message);
+    } else if (message.type === 'error') {
+      this.#error = new LodestoneError(message.code, message.message);
+      this.#opened.reject(this.#error);
+    }
+    this.#waiting?.();
+  }
+
+  /** Whether all of it has been decoded. */
+  get complete() {
+    return this.chunks !== undefined && this.chunksReady === this.chunks.length;
+  }
+
+  /** Says how far levels may lie from the whole mesh, in its units. 0, the default, is the whole. */
+  want(deviation) {
+    this.#session.want(deviation);
+  }
+
+  close() {
+    this.#closed = true;
+    this.#session.close();
+    this.#waiting?.();
+  }
+
+  /** Returns the next update; undefined once the stream is closed. */
+  async next() {
+    if (this.#owes) {
+      this.#owes = false;
+      this.#session.acknowledge();
+    }
+    while (this.#queue.length === 0) {
+      if (this.#closed) return undefined;
+      if (this.#error) throw this.#error;
+      await new Promise((resolve) => {
+        this.#waiting = resolve;
+      });
+    }
+    this.#owes = true;
+    return this.#queue.shift();
+  }
+
+  async *[Symbol.asyncIterator]() {
+    for (let update = await this.next(); update; update = await this.next()) yield update;
+  }
+}

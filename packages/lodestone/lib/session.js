@@ -1,0 +1,177 @@
+// A stream that is read and drawn from: fetches what is wanted, decodes it, and hands out what an engine has to upload.
+// It runs in a worker, or where there is none in the page.
+import { Source } from './source.js';
+
+const MOST_RECORDS = 20_000; // in an update: about a megabyte, which a page takes in a few milliseconds
+const MOST_BYTES = 1 << 18; // in a request, so that what is wanted may change
+
+/** What a promise waits for until somebody calls `wake`. */
+class Signal {
+  #wake = () => {};
+
+  wait() {
+    return new Promise((resolve) => {
+      this.#wake = resolve;
+    });
+  }
+
+  wake() {
+    this.#wake();
+  }
+}
+
+export class Session {
+  #options;
+  #source;
+  #stream;
+  #cursor;
+  #deviation;
+  #changed = new Signal();
+  #acknowledged = new Signal();
+  #post;
+  #closed = false;
+  #chunks = [];
+  #ended = false; // no more bytes
+  #shown = false; // the base mesh, at least
+
+  /** `post(message, transferred)` gets the messages; after each update it waits for `acknowledge`. */
+  constructor(runtime, url, options, post) {
+    this.#options = options;
+    this.#deviation = options.deviation ?? 0;
+    this.#source = new Source(url, options.fetch ?? ((...request) => fetch(...request)));
+    this.#stream = runtime.createStream({ mostBytes: options.mostBytes });
+    this.#post = post;
+  }
+
+  /** Says what levels may deviate by: more is fetched where that is less than what has arrived. */
+  want(deviation) {
+    this.#deviation = deviation;
+    this.#changed.wake();
+  }
+
+  acknowledge() {
+    this.#acknowledged.wake();
+  }
+
+  close() {
+    this.#closed = true;
+    this.#source.close();
+    this.#changed.wake();
+    this.#acknowledged.wake();
+  }
+
+  /** Works until it is closed, or fails with a message of type "error". */
+  async run() {
+    try {
+      while (!this.#closed) {
+        if (await this.#move()) continue;
+        if (this.#isEnough()) await this.#changed.wait();
+        else await this.#fetchMore();
+      }
+    } catch (error) {
+      if (!this.#closed) this.#post({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
+    }
+    this.#cursor?.destroy();
+    this.#stream.destroy();
+  }
+
+  #isEnough() {
+    const { chunksReady, chunkCount } = this.#stream.state;
+    if (this.#ended || (chunkCount > 0 && chunksReady === chunkCount)) return true;
+    return chunksReady > 0 && this.#chunks[chunksReady - 1].deviation <= this.#deviation;
+  }
+
+  /** How far bytes are wanted. */
+  #wantedEnd(state) {
+    let index = state.chunksReady;
+    const most = state.dueBegin + MOST_BYTES;
+    while (index + 1 < this.#chunks.length && this.#chunks[index].deviation > this.#deviation && this.#chunks[index].byteEnd < most) ++index;
+    return Math.max(state.dueEnd, this.#chunks[index]?.byteEnd ?? 0);
+  }
+
+  async #fetchMore() {
+    const state = this.#stream.state;
+    const read = await this.#source.read(state.dueBegin, this.#wantedEnd(state));
+    if (this.#closed) return;
+    if (read) {
+      await this.#append(read);
+      return;
+    }
+    this.#ended = true;
+    this.#stream.finish();
+    this.#post({ type: 'end', bytes: state.dueBegin });
+  }
+
+  /** Hands bytes over as far as a chunk is complete, and shows that before it goes on. */
+  async #append({ offset, bytes }) {
+    for (;;) {
+      const before = this.#stream.state;
+      const length = Math.min(bytes.length, before.dueEnd - offset);
+      if (length <= 0) return; // behind the end, or all of it was there before
+      this.#stream.append(offset, bytes.subarray(0, length));
+      offset += length;
+      bytes = bytes.subarray(length);
+      const after = this.#stream.state;
+      if (before.chunkCount === 0 && after.chunkCount > 0) this.#chunks = Array.from({ length: after.chunkCount }, (_, i) => this.#stream.chunk(i));
+      if (after.chunksReady > 0 && !this.#cursor) this.#start(after);
+      if (after.chunksReady > before.chunksReady) while (!this.#closed && (await this.#move()));
+      if (this.#closed || bytes.length === 0) return;
+    }
+  }
+
+  #start(state) {
+    this.#cursor = this.#stream.createCursor({ slack: this.#options.slack });
+    this.#post({
+      type: 'open',
+      chunks: this.#chunks,
+      groups: Array.from({ length: state.groupCount }, (_, i) => ({ material: this.#stream.group(i).material })),
+      attributes: Array.from({ length: state.attributeCount }, (_, i) => this.#stream.attribute(i)),
+      low: state.low,
+      high: state.high,
+    });
+  }
+
+  /** Moves the cursor towards what is wanted and posts what that changed; false where it stands there already. */
+  async #move() {
+    if (!this.#cursor) return false;
+    const from = this.#cursor.level.position;
+    const way = this.#cursor.choose(this.#deviation) - from;
+    if (way === 0 && this.#shown) return false;
+    this.#shown = true;
+    this.#cursor.seek(from + Math.sign(way) * Math.min(Math.abs(way), MOST_RECORDS));
+    const { update, transferred } = this.#update();
+    this.#post(update, transferred);
+    await this.#acknowledged.wait();
+    return true;
+  }
+
+  #update() {
+    const cursor = this.#cursor;
+    const stream = this.#stream;
+    const state = stream.state;
+    const { begin, end } = cursor.newWedges();
+    const update = {
+      type: 'update',
+      level: cursor.level,
+      wedges: { begin, end, positions: stream.positions(begin, end), attributes: [] },
+      groups: [],
+      normals: this.#options.normals ? cursor.normals() : null,
+      low: state.low,
+      high: state.high,
+      bytes: state.dueBegin,
+      chunksReady: state.chunksReady,
+    };
+    for (let i = 0; i < state.attributeCount; ++i) update.wedges.attributes.push(stream.attributeValues(i, begin, end));
+    for (let group = 0; group < state.groupCount; ++group) {
+      const ranges = cursor.changes(group);
+      const corners = cursor.corners(group);
+      update.groups.push({
+        count: corners.length,
+        ranges: ranges.map((range) => ({ begin: range.begin, corners: corners.slice(range.begin, range.end) })),
+      });
+    }
+    const arrays = [update.wedges.positions, ...update.wedges.attributes, ...update.groups.flatMap(({ ranges }) => ranges.map(({ corners }) => corners))];
+    if (update.normals) arrays.push(update.normals);
+    return { update, transferred: arrays.map(({ buffer }) => buffer) };
+  }
+}

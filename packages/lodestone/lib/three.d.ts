@@ -1,0 +1,32 @@
+import type { Camera, Group, Material, Sphere } from 'three';
+import type { Level, LodestoneStream, StreamOptions } from './index.js';
+
+export interface MeshOptions extends StreamOptions {
+  /** A material, or a function that makes one of a group's number; none: a plain one. */
+  material?: Material | ((number: number) => Material);
+  /** How many pixels of the picture the error of the level may cover. Default 1; 0: all detail. */
+  pixelError?: number;
+}
+
+/**
+ * A mesh that arrives while it is drawn: a group with a mesh for each material. Call `update(camera, height)` before each
+ * frame; the level then is the coarsest whose error covers at most `pixelError` pixels of the picture.
+ */
+export class LodestoneMesh extends Group {
+  /** Opens a stream; resolves when its first level can be drawn. */
+  static load(url: string | URL, options?: MeshOptions): Promise<LodestoneMesh>;
+
+  pixelError: number;
+  /** Rejects with what the stream fails with after it was opened; resolves when the object is disposed of. */
+  readonly complete: Promise<void>;
+  readonly level: Level;
+  readonly stream: LodestoneStream;
+
+  /** Says how the object is seen: by which camera, in a picture of how many pixels' height. */
+  update(camera: Camera, height: number): void;
+  /** Stops reading and frees what the object holds, but for its materials. */
+  dispose(): void;
+}
+
+/** How many pixels a unit of the world covers at a sphere's nearest point. */
+export function pixelsPerUnit(camera: Camera, height: number, sphere: Sphere): number;

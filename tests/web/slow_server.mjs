@@ -1,0 +1,63 @@
+// A server of one folder that sends slowly, in pieces, holds back, drops connections and answers ranges wrongly, as it is
+// told: for what reads while bytes arrive.
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import { join, normalize, sep } from 'node:path';
+
+/**
+ * Starts it. `behaviour` may be changed at any time: ranges 'yes' | 'no' | 'wrong'; piece, bytes sent at once; rate, bytes a
+ * second; limit, bytes of a file before which it stops; drop, bytes after which each connection breaks.
+ */
+export async function serveSlowly(folder, behaviour) {
+  const asked = [];
+  const waiting = new Set();
+  const isHeld = (at) => at >= (behaviour.limit ?? Infinity);
+  const moved = () => new Promise((resolve) => waiting.add(resolve));
+
+  async function respond(request, response) {
+    if (request.method === 'OPTIONS')
+      return void response.writeHead(204, { 'access-control-allow-origin': '*', 'access-control-allow-headers': 'range' }).end();
+    const path = normalize(join(folder, decodeURIComponent(new URL(request.url, 'http://localhost').pathname)));
+    const bytes = path.startsWith(folder + sep) ? await readFile(path).catch(() => undefined) : undefined;
+    if (!bytes) return void response.writeHead(404, { 'access-control-allow-origin': '*' }).end();
+    const match = behaviour.ranges === 'no' ? null : /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
+    let [first, end] = match ? [Number(match[1]), Math.min(Number(match[2]) + 1, bytes.length)] : [0, bytes.length];
+    if (match && first >= bytes.length) return void response.writeHead(416, { 'access-control-allow-origin': '*' }).end();
+    asked.push({ first, end, ranged: Boolean(match) });
+    if (match && behaviour.ranges === 'wrong') first = Math.min(first + 100, end - 1);
+    response.writeHead(match ? 206 : 200, {
+      'content-type': 'application/octet-stream',
+      'content-length': end - first,
+      'access-control-allow-origin': '*',
+      'access-control-expose-headers': 'content-range',
+      ...(match && { 'content-range': `bytes ${first}-${end - 1}/${bytes.length}` }),
+    });
+    const { drop = Infinity } = behaviour;
+    for (let at = first; at < end && !response.destroyed; ) {
+      while (isHeld(at) && !response.destroyed) await Promise.race([moved(), new Promise((resolve) => response.once('close', resolve))]);
+      const length = Math.min(behaviour.piece ?? 1 << 16, end - at, (behaviour.limit ?? Infinity) - at);
+      if (at + length - first > drop) return void response.destroy();
+      response.write(bytes.subarray(at, at + length));
+      at += length;
+      await new Promise((resolve) => setTimeout(resolve, behaviour.rate ? (1000 * length) / behaviour.rate : 0));
+    }
+    response.end();
+  }
+
+  const server = createServer((request, response) => respond(request, response).catch(() => response.destroy()));
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return {
+    asked,
+    address: `http://127.0.0.1:${server.address().port}`,
+    /** Changes the behaviour. */
+    change(changes) {
+      Object.assign(behaviour, changes);
+      for (const resolve of waiting) resolve();
+      waiting.clear();
+    },
+    close: () => new Promise((resolve) => {
+      server.close(resolve);
+      server.closeAllConnections();
+    }),
+  };
+}

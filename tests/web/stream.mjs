@@ -1,0 +1,260 @@
+// The npm package: the runtime in WebAssembly gives what the native one gives, byte for byte; streams are read from servers
+// of all kinds; and a page of three.js draws one while it arrives.
+//
+//   node stream.mjs --program PROGRAM --sums PROGRAM --package FOLDER [--models FOLDER] --output FOLDER
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { basename, join } from 'node:path';
+import { gzipSync } from 'node:zlib';
+import { serveSlowly } from './slow_server.mjs';
+import { Log, openSite, readOptions, repository, skip } from './suite.mjs';
+
+const MOST_MODULE_BYTES = 120_000; // compressed
+
+const options = readOptions();
+if (!existsSync(join(options.package, 'lib', 'lodestone.wasm'))) {
+  console.log(`SKIPPED: no ${options.package}: run ./run web, which needs Emscripten`);
+  process.exit(77);
+}
+const { load } = await import(join(options.package, 'lib', 'wasm.js'));
+const { LodestoneStream } = await import(join(options.package, 'lib', 'index.js'));
+const wasm = readFileSync(join(options.package, 'lib', 'lodestone.wasm'));
+const folder = join(options.output, 'streams');
+mkdirSync(folder, { recursive: true });
+
+/** Builds the streams of the models that are there. */
+function buildStreams() {
+  const wanted = [
+    [join(repository, 'demo', 'suzi.glb')],
+    [join(options.models, 'paper', 'stanford-bunny.obj')],
+    [join(options.models, 'mesh', 'spot', 'spot_triangulated.obj')],
+  ];
+  return wanted.flatMap(([model]) => {
+    if (!existsSync(model)) return skip(model) ?? [];
+    const path = join(folder, `${basename(model).replace(/\..*/, '')}.lods`);
+    execFileSync(options.program, ['build', model, '-o', path, '-q'], { stdio: ['ignore', 'ignore', 'ignore'] });
+    return [path];
+  });
+}
+
+function addToSum(sum, array) {
+  for (const byte of new Uint8Array(array.buffer, array.byteOffset, array.byteLength)) sum = Math.imul(sum ^ byte, 16777619);
+  return sum;
+}
+
+/** As stream_sums.c has it. */
+function sumOfLevel(stream, cursor, position) {
+  cursor.seek(position);
+  const { groupCount, attributeCount } = stream.state;
+  const { wedgeCount, deviation } = cursor.level;
+  let sum = 2166136261;
+  for (let group = 0; group < groupCount; ++group) sum = addToSum(sum, cursor.corners(group));
+  sum = addToSum(sum, stream.positions(0, wedgeCount));
+  for (let i = 0; i < attributeCount; ++i) sum = addToSum(sum, stream.attributeValues(i, 0, wedgeCount));
+  return addToSum(sum, new Float32Array([deviation])) >>> 0;
+}
+
+/** The sums after each chunk, read in pieces of some length. */
+function sumsOf(runtime, bytes, length) {
+  const stream = runtime.createStream();
+  const sums = [];
+  let cursor;
+  for (let at = 0; at < bytes.length; at += length) {
+    for (let begin = at; begin < Math.min(at + length, bytes.length); ) {
+      const end = Math.min(at + length, bytes.length, stream.state.dueEnd);
+      stream.append(begin, bytes.subarray(begin, end));
+      begin = end;
+      const { chunksReady, recordCount } = stream.state;
+      if (chunksReady === sums.length) continue;
+      cursor ??= stream.createCursor();
+      sums.push([sumOfLevel(stream, cursor, recordCount), sumOfLevel(stream, cursor, Math.floor(recordCount / 2))]);
+    }
+  }
+  stream.finish();
+  cursor.destroy();
+  stream.destroy();
+  return sums;
+}
+
+/** Reads a stream to its end and puts its updates together; returns the sum of its finest level. */
+async function follow(url, more = {}) {
+  const stream = await LodestoneStream.open(url, { worker: false, module: wasm, ...more });
+  const pieces = [];
+  const groups = stream.groups.map(() => []);
+  let updates = 0;
+  let wedges = 0;
+  for await (const update of stream) {
+    ++updates;
+    assert.equal(update.wedges.begin, wedges);
+    wedges = update.wedges.end;
+    pieces.push(update.wedges);
+    update.groups.forEach(({ count, ranges }, group) => {
+      for (const { begin, corners } of ranges) corners.forEach((corner, i) => (groups[group][begin + i] = corner));
+      groups[group].length = count;
+    });
+    if (stream.complete && update.level.position === stream.chunks.at(-1).position) break;
+  }
+  stream.close();
+  let sum = 2166136261;
+  for (const corners of groups) sum = addToSum(sum, Uint32Array.from(corners));
+  for (const { positions } of pieces) sum = addToSum(sum, positions);
+  stream.attributes.forEach((_, i) => {
+    for (const { attributes } of pieces) sum = addToSum(sum, attributes[i]);
+  });
+  return { sum: addToSum(sum, new Float32Array([stream.level.deviation])) >>> 0, updates, bytes: stream.bytes };
+}
+
+function checksOfModule() {
+  return {
+    'compressed size': () => {
+      const bytes = gzipSync(wasm, { level: 9 }).length;
+      assert.ok(bytes <= MOST_MODULE_BYTES, `${bytes} bytes`);
+      return `${bytes} bytes of ${wasm.length}`;
+    },
+    'errors have codes and words': async () => {
+      const runtime = await load(wasm);
+      const stream = runtime.createStream();
+      assert.throws(() => stream.createCursor(), { code: 'LODESTONE_NOT_READY' });
+      assert.throws(() => stream.append(0, new Uint8Array(16)), { code: 'LODESTONE_MALFORMED', message: /magic/ });
+      const removal = readFileSync(join(repository, 'tests', 'golden', 'stream-1.0.lds'));
+      assert.throws(() => runtime.createStream().append(0, removal), { code: 'LODESTONE_UNSUPPORTED', message: /version 1, where 3 to 3/ });
+      return 'magic, version, no chunk yet';
+    },
+  };
+}
+
+function checksOfStream(path) {
+  const bytes = new Uint8Array(readFileSync(path));
+  const native = execFileSync(options.sums, [path], { encoding: 'utf8' }).trim().split('\n').map((line) => line.split(' ').map(Number));
+  const whole = native.at(-1)[0];
+  const served = async (behaviour, job) => {
+    const server = await serveSlowly(folder, behaviour);
+    try {
+      return await job(`${server.address}/${basename(path)}`, server);
+    } finally {
+      await server.close();
+    }
+  };
+  const followed = (behaviour) => () =>
+    served(behaviour, async (url, server) => {
+      const { sum, updates } = await follow(url);
+      assert.equal(sum, whole);
+      return `${updates} updates, ${server.asked.length} requests`;
+    });
+  return {
+    'the same as natively': async () => {
+      const runtime = await load(wasm);
+      for (const length of [1 << 20, 1000, 7]) assert.deepEqual(sumsOf(runtime, bytes, length), native);
+      return `${native.length} chunks`;
+    },
+    'decodes at': async () => {
+      const runtime = await load(wasm);
+      const times = [0, 1, 2, 3].map(() => {
+        const stream = runtime.createStream();
+        const start = performance.now();
+        stream.append(0, bytes);
+        const time = performance.now() - start;
+        stream.destroy();
+        return time;
+      });
+      const stream = runtime.createStream();
+      stream.append(0, bytes);
+      return `${(stream.state.recordCount / Math.min(...times) / 1000).toFixed(3)} M records/s, the first time ${times[0].toFixed(0)} ms`;
+    },
+    'a server of ranges': followed({}),
+    'a server without ranges': followed({ ranges: 'no' }),
+    'a server that answers other ranges': followed({ ranges: 'wrong' }),
+    'connections that break': followed({ drop: 20_000, piece: 5000 }),
+    'pieces of 100 bytes, without ranges': followed({ ranges: 'no', piece: 100 }),
+    'no more than what is wanted is fetched': () =>
+      served({}, async (url, server) => {
+        const deviation = 0.2 * (await LodestoneStream.open(url, { worker: false, module: wasm })).chunks[0].deviation;
+        server.asked.length = 0;
+        const stream = await LodestoneStream.open(url, { worker: false, module: wasm, deviation });
+        let update = await stream.next();
+        while (update.level.deviation > deviation) update = await stream.next();
+        await new Promise((resolve) => setTimeout(resolve, 50));
+        const fetched = Math.max(...server.asked.map(({ end }) => end));
+        stream.want(0);
+        while (!(stream.complete && update.level.deviation === 0)) update = await stream.next();
+        stream.close();
+        assert.ok(bytes.length < 50_000 || fetched < 0.6 * bytes.length, `${fetched} of ${bytes.length}`);
+        return `${fetched} of ${bytes.length} bytes, then all`;
+      }),
+    'what is missing or broken is told': () =>
+      served({}, async (url) => {
+        await assert.rejects(LodestoneStream.open(`${url}.none`, { worker: false, module: wasm }), { code: 'NETWORK', message: /404/ });
+        await assert.rejects(LodestoneStream.open(url, { worker: false, module: wasm, mostBytes: 100 }), { code: 'LODESTONE_LIMIT_EXCEEDED' });
+        return '404, limit';
+      }),
+  };
+}
+
+/** Draws a stream at 5, 25 and 100 % of its bytes, and takes pictures. */
+function checksOfPage(site, path) {
+  const bytes = readFileSync(path).length;
+  const native = execFileSync(options.sums, [path], { encoding: 'utf8' }).trim().split('\n').map((line) => line.split(' ').map(Number));
+  const name = basename(path, '.lods');
+  let page;
+  let server;
+  const picture = (label) => page.page.screenshot({ path: join(options.output, `stream-${name}-${label}.png`) });
+  return {
+    'opens while it arrives': async () => {
+      const { openPage } = await import('./browser.mjs');
+      server = await serveSlowly(folder, { limit: Math.max(4096, Math.ceil(0.01 * bytes)), piece: 1000, rate: 5e6 / 8 });
+      page = await openPage(site.browser, `${site.address}/pages/stream.html`);
+      const time = await page.ask(([url]) => window.openStream(url, { pixelError: 0 }), [`${server.address}/${basename(path)}`]);
+      await page.ask(() => window.watchTasks());
+      return `${time.toFixed(0)} ms, before more than ${Math.max(4096, Math.ceil(0.01 * bytes))} bytes`;
+    },
+    ...Object.fromEntries(
+      [5, 25, 100].map((percent) => [
+        `at ${percent} % of the bytes`,
+        async () => {
+          server.change({ limit: percent === 100 ? Infinity : Math.max(4096, Math.ceil((percent / 100) * bytes)) });
+          const state = await page.ask((whole) => window.settle(whole), percent === 100);
+          await picture(percent);
+          assert.equal(state.drawn, state.faceCount);
+          assert.equal(state.complete, percent === 100);
+          return `${state.faceCount} faces, deviation ${state.deviation.toPrecision(3)}`;
+        },
+      ]),
+    ),
+    'ends with the buffers that the native runtime has': async () => {
+      const longest = await page.ask(() => window.longestTask());
+      assert.equal(await page.ask(() => window.sumOfLevel()), native.at(-1)[0]);
+      return `longest task of the page ${longest.toFixed(0)} ms, drawing apart`;
+    },
+    'is coarser from afar, and the whole again from near': async () => {
+      const near = await page.ask(() => window.drawFrame());
+      const far = await page.ask(async () => {
+        window.setPixelError(1);
+        window.moveTo(60);
+        return window.settle();
+      });
+      await page.ask(() => {
+        window.setPixelError(0);
+        window.moveTo(3.2);
+        return window.settle(true);
+      });
+      const again = await page.ask(() => window.drawFrame());
+      assert.ok(far.faceCount < 0.5 * near.faceCount, `${far.faceCount} of ${near.faceCount} faces`);
+      assert.equal(again.faceCount, near.faceCount);
+      assert.equal(await page.ask(() => window.sumOfLevel()), native.at(-1)[0]);
+      await picture('again');
+      await page.page.close();
+      await server.close();
+      return `${far.faceCount} of ${near.faceCount} faces`;
+    },
+  };
+}
+
+const log = new Log();
+const streams = buildStreams();
+await log.run('module', checksOfModule());
+for (const path of streams) await log.run(basename(path), checksOfStream(path));
+const site = await openSite({ ...options, more: { package: options.package } });
+for (const path of streams) await log.run(`${basename(path)} in three.js`, checksOfPage(site, path));
+await site.close();
+log.close();
