@@ -129,6 +129,7 @@ void BuildCommand::add_to(CLI::App& app) {
       "  lodestone build bunny.obj -o bunny.glb --html bunny.html\n"
       "  lodestone build town.gltf -o town.glb --profile files\n"
       "  lodestone build bunny.obj -o bunny.lods --qp 12\n"
+      "  lodestone build bunny.obj -o bunny.glb --profile stream\n"
       "  lodestone build *.obj -o lods/");
 }
 
@@ -194,8 +195,12 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->check(CLI::IsMember({"optimised", "subset"}))
       ->type_name("NAME")
       ->group(group);
-  app.add_option("--profile", profile, "One file, levels by MSFT_lod (default), or a file for each level and an index")
-      ->check(CLI::IsMember({"msft-lod", "files"}))
+  app.add_option("--profile", profile,
+                 "One file, levels by MSFT_lod (default); a file for each level and an index; or one file of a coarse "
+                 "level (3 % "
+                 "of the faces, or one target) and a stream that refines it to the whole, together about as large as "
+                 "the whole mesh by Draco: a draft, read by this program alone so far")
+      ->check(CLI::IsMember({"msft-lod", "files", "stream"}))
       ->type_name("NAME")
       ->group(group);
   app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);

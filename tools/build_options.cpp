@@ -18,6 +18,8 @@ namespace {
 
 constexpr int kDefaultLevelCount = 5;
 constexpr double kDefaultRatio = 0.5;
+constexpr double kShownRatio =
+    0.03;  // Of what a viewer without the extension shows: it adds a twentieth to the stream.
 
 Metric metric_of(const std::string& name) {
   if (name == "gaussian") return Metric::Gaussian;
@@ -58,11 +60,18 @@ Json weights_json(const AttributeWeights& weights) {
 
 bool has_file_per_level(const BuildCommand& options) { return options.profile == "files"; }
 
+bool shows_one_level(const BuildCommand& options) { return options.profile == "stream"; }
+
 namespace {
 
 Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   Result<std::vector<LevelTarget>> given = options.targets.parse();
   if (!given) return given;
+  if (shows_one_level(options)) {
+    if (given->size() > 1 || options.level_count)
+      return fail(ErrorCode::InvalidArgument, "--profile stream shows one level: give one target, and no --levels");
+    return given->empty() ? ratio_targets(kShownRatio, 1) : given;
+  }
   const bool by_ratio = given->empty() || options.targets.is_one_ratio();
   if (!by_ratio && options.level_count) {
     return fail(ErrorCode::InvalidArgument, "--levels goes with one --ratio; a list has one level for each entry");
@@ -120,7 +129,8 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   options.importance.attribute = command.importance;
   options.scope = command.per_mesh ? TargetScope::Mesh : TargetScope::Scene;
   options.placement = command.placement == "subset" ? Placement::Subset : Placement::Optimised;
-  options.layout = has_file_per_level(command) ? FileLayout::FilePerLevel : FileLayout::OneFile;
+  if (has_file_per_level(command)) options.layout = FileLayout::FilePerLevel;
+  if (shows_one_level(command)) options.layout = FileLayout::Refined;
   options.stream = !command.no_stream;
   options.strict = command.strict;
   options.keep_levels = command.html.has_value();

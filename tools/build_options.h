@@ -14,6 +14,9 @@ namespace lodestone::tool {
 /// True with `--profile files`: one file for each level.
 bool has_file_per_level(const BuildCommand& options);
 
+/// True with `--profile stream`: one coarse level in the file, all others in its stream.
+bool shows_one_level(const BuildCommand& options);
+
 /// True where each mesh's removal stream is written.
 bool writes_stream(const BuildCommand& command);
 

@@ -206,4 +206,11 @@ bool StreamReader::done() const { return state_->done(); }
 const std::optional<Error>& StreamReader::error() const { return state_->error(); }
 const ProgressiveMesh& StreamReader::mesh() const { return state_->mesh(); }
 
+Result<ProgressiveMesh> read_stream(std::span<const std::byte> bytes) {
+  StreamReader reader;
+  LODESTONE_CHECK(reader.append(bytes));
+  LODESTONE_CHECK(reader.finish());
+  return reader.mesh();
+}
+
 }  // namespace lodestone

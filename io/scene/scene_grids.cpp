@@ -315,6 +315,30 @@ Result<std::vector<QuantizationGrids>> fit_grids(const Scene& scene, std::span<c
 
 namespace lodestone {
 
+std::vector<CompactOptions> compact_options(const Scene& scene, const AssetOptions& options) {
+  constexpr int kLeastBits = 8, kMostBits = 16, kMostOtherBits = 24;
+  AssetOptions plain = options;
+  plain.compression = Compression::Draco;
+  plain.position_grid.reset();
+  const auto fit = [&] {
+    return detail::fit_positions(scene, plain,
+                                 [&](std::size_t mesh, const auto& add) { add(scene.meshes()[mesh].mesh); });
+  };
+  std::vector<CompactOptions> compact;
+  for (const detail::QuantizationGrid& grid : fit()) {
+    compact.push_back({grid.is_exact() ? kMostBits : std::clamp(grid.bits, kLeastBits, kMostBits), {}});
+    compact.back().normal_bits = std::min(options.normal_bits, kMostOtherBits);
+    compact.back().texture_bits = std::clamp(options.texcoord_bits, 2, kMostOtherBits);
+    compact.back().other_bits = std::clamp(std::max(options.generic_bits, detail::kMinWeightBits), 2, kMostOtherBits);
+  }
+  plain.position_bits = kMostBits;  // boxes do not hang on it
+  const std::vector<detail::QuantizationGrid> boxes = fit();
+  for (std::size_t i = 0; i < compact.size(); ++i)
+    if (const auto& o = boxes[i].origin; o.size() == 3)
+      compact[i].grid = CompactGrid{{o[0], o[1], o[2]}, boxes[i].range};
+  return compact;
+}
+
 std::vector<double> quantisation_errors(const Scene& scene, const AssetOptions& options) {
   std::vector<double> errors(scene.meshes().size());
   if (options.compression == Compression::None) return errors;

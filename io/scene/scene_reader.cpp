@@ -5,7 +5,7 @@
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 #include <lodestone/io/scene.h>
-#include <lodestone/io/stream_format.h>
+#include <lodestone/io/stream_reader.h>
 #include <lodestone/lod/cursor.h>
 
 #include "base/files_beside.h"
@@ -27,6 +27,12 @@ namespace {
 using namespace detail;
 
 Result<void> refuse_levels(const GltfDocument& document) {
+  for (std::size_t mesh = 0; mesh < document.count("meshes"); ++mesh) {
+    LODESTONE_TRY(const std::vector<std::byte> stream, stored_stream(document, mesh));
+    if (is_compact(stream))
+      return fail(ErrorCode::Unsupported, text("mesh ", mesh, " is a level of what its stream (", kStreamExtension,
+                                               ") refines it to; build from the original"));
+  }
   LODESTONE_TRY(const auto chains, lod_chains(document));
   if (chains.empty()) return {};
   return fail(ErrorCode::Unsupported,
@@ -50,7 +56,7 @@ Result<std::map<std::size_t, std::vector<std::size_t>>> find_shown_meshes(const 
 Result<void> add_stream(const GltfDocument& document, std::size_t number, SceneMesh& mesh) {
   LODESTONE_TRY(mesh.stream, stored_stream(document, number));
   if (mesh.stream.empty() || mesh.mesh.face_count() > 0) return {};
-  LODESTONE_TRY(const ProgressiveMesh whole, decode_stream(mesh.stream));
+  LODESTONE_TRY(const ProgressiveMesh whole, read_stream(mesh.stream));
   mesh.mesh = extract_level(whole, static_cast<Index>(whole.record_count()));
   return {};
 }

@@ -338,7 +338,7 @@ class SceneWriter {
     const std::size_t view = builder_.add_view(stream);
     Json& extensions = builder_.at("meshes", impl_.sources[mesh].mesh)["extensions"];
     if (!extensions.is_object()) extensions = Json::object();
-    extensions[kStreamExtension] = {{"bufferView", view}, {"version", kStreamExtensionVersion}};
+    extensions[kStreamExtension] = {{"bufferView", view}, {"version", stream_version(stream)}};
     builder_.use_extension(kStreamExtension);
     layout_.stream_bytes += stream.size();
   }
@@ -472,13 +472,13 @@ EncodedGeometry& EncodedGeometry::operator=(EncodedGeometry&&) noexcept = defaul
 std::vector<std::vector<AssetLevel>>& EncodedGeometry::levels() { return impl_->writer.levels(); }
 
 Result<EncodedGeometry> encode_geometry(const Scene& scene, std::span<const LeveledMesh> meshes,
-                                        const AssetOptions& options, std::optional<std::size_t> level) {
+                                        const AssetOptions& options, const FileContent& content) {
   LODESTONE_CHECK(check_options(options));
   LODESTONE_TRY(LevelRange range, all_levels(scene, meshes));
-  if (level && *level >= range.count)
-    return fail(ErrorCode::InvalidArgument, text("level ", *level, " of ", range.count, " does not exist"));
-  if (level) range = {*level, 1};
-  auto impl = std::make_unique<EncodedGeometry::Impl>(scene, meshes, range, !level.has_value(), options);
+  if (content.level && *content.level >= range.count)
+    return fail(ErrorCode::InvalidArgument, text("level ", *content.level, " of ", range.count, " does not exist"));
+  if (content.level) range = {*content.level, 1};
+  auto impl = std::make_unique<EncodedGeometry::Impl>(scene, meshes, range, content.streams, options);
   LODESTONE_CHECK(impl->writer.encode());
   return EncodedGeometry(std::move(impl));
 }
@@ -493,7 +493,7 @@ Result<EncodedAsset> encode_scene(const Scene& scene, std::span<const LeveledMes
 
 Result<EncodedAsset> encode_scene_level(const Scene& scene, std::span<const LeveledMesh> meshes, std::size_t level,
                                         const AssetOptions& options) {
-  LODESTONE_TRY(EncodedGeometry geometry, encode_geometry(scene, meshes, options, level));
+  LODESTONE_TRY(EncodedGeometry geometry, encode_geometry(scene, meshes, options, {level, false}));
   return write_asset(std::move(geometry));
 }
 

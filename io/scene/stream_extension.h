@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <lodestone/core/result.h>
@@ -9,9 +11,14 @@
 
 namespace lodestone::detail {
 
-// The glTF extension that holds the removal stream; docs/stream-format.md describes it.
+// The glTF extension that holds a mesh's stream, of any version; docs/stream-format.md describes it.
 inline constexpr const char* kStreamExtension = "LODESTONE_removal_stream";
-inline constexpr const char* kStreamExtensionVersion = "2.0";
+
+/// Returns the version that a stream says it has, as "3.0". Pre: its beginning is there.
+std::string stream_version(std::span<const std::byte> stream);
+
+/// Whether a stream is a compact one, of version 3; the mesh that has it may then be any level.
+bool is_compact(std::span<const std::byte> stream);
 
 /// Returns the stream that a mesh of the document has; empty for none. Errors: Malformed.
 Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh);

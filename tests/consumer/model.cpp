@@ -30,7 +30,7 @@ int main() {
   const auto scene = lodestone::scene_from_model(model);
   if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 1;
   lodestone::BuildOptions options;
-  options.storage.compression = Compression::None;  // tinygltf loads no Draco
+  options.storage.compression = lodestone::Compression::None;  // tinygltf loads no Draco
   const auto built = lodestone::build_asset(*scene, options);
   if (!built) return std::fprintf(stderr, "%s\n", built.error().message.c_str()), 1;
   const auto levels = lodestone::model_from_asset(built->files[0]);

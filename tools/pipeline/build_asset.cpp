@@ -9,7 +9,10 @@
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/core/parallel.h>
 #include <lodestone/io/stream_format.h>
+#include <lodestone/io/stream_reader.h>
+#include <lodestone/lod/cursor.h>
 
 #include "pipeline/build_progress.h"
 #include "pipeline/level_measure.h"
@@ -98,20 +101,40 @@ void report_plan(const Scene& scene, LevelPlan& plan, const std::vector<LeveledM
 constexpr double kStreamsShare = 0.3;
 constexpr double kEncodingShare = 0.9;
 
-/// A mesh that is beyond the stream's limits goes without one; its levels do not need it.
-Result<void> encode_streams(const Scene& scene, std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes,
-                            const Progress& progress) {
-  for (std::size_t i = 0; i < levels.size(); ++i) {
+Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const CompactOptions* compact,
+                                      const Progress& progress) {
+  if (compact == nullptr) {
     StreamOptions options;
-    options.progress = progress.part(1 / static_cast<double>(levels.size()));
-    Result<std::vector<std::byte>> stream = encode_stream(result.simplified[i].mesh, options);
-    if (!stream && stream.error().code != ErrorCode::LimitExceeded) return tl::unexpected(stream.error());
-    if (!stream) {
-      notes.add(text("mesh '", scene.meshes()[i].name, "' has no removal stream: ", stream.error().message));
-      continue;
+    options.progress = progress;
+    return encode_stream(mesh, options);
+  }
+  LODESTONE_TRY(CompactStream stream, encode_compact(mesh, *compact));
+  if (!progress.reach(1)) return cancelled();
+  return std::move(stream.bytes);
+}
+
+/// A mesh that is beyond the stream's limits goes without one; its levels do not need it, unless all but one are in it.
+Result<void> encode_streams(const Scene& scene, const BuildOptions& build, std::vector<LeveledMesh>& levels,
+                            BuildResult& result, Notes& notes, const Progress& progress) {
+  const bool refines = build.layout == FileLayout::Refined;
+  std::vector<CompactOptions> compact;
+  if (refines) compact = compact_options(scene, build.storage);
+  std::vector<Result<std::vector<std::byte>>> streams(levels.size());
+  for_each_in_parallel(levels.size(), [&](std::size_t i) {
+    const Progress part = progress.part(1 / static_cast<double>(levels.size()));
+    if (!part.is_cancelled()) streams[i] = encode(result.simplified[i].mesh, refines ? &compact[i] : nullptr, part);
+  });
+  if (!progress.reach(1)) return cancelled();
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const std::string name = text("mesh '", scene.meshes()[i].name, "'");
+    if (streams[i]) {
+      result.meshes[i].stream.bytes = streams[i]->size();
+      levels[i].stream = std::move(*streams[i]);
+    } else if (!refines && streams[i].error().code == ErrorCode::LimitExceeded) {
+      notes.add(text(name, " has no removal stream: ", streams[i].error().message));
+    } else {
+      return fail(streams[i].error().code, text(name, ": ", streams[i].error().message));
     }
-    result.meshes[i].stream.bytes = stream->size();
-    levels[i].stream = std::move(*stream);
   }
   return {};
 }
@@ -138,10 +161,11 @@ Result<void> make_file(MeasuredScene& measured, const LevelPlan& plan, const std
   const Scene& scene = measured.scene();
   AssetOptions storage = storage_of(scene, options);
   storage.progress = progress.part(kEncodingShare);
-  const bool is_one_level = options.layout == FileLayout::FilePerLevel;
-  if (is_one_level && !storage.gltf_name.empty()) storage.gltf_name += text("_LOD", file.first);
-  LODESTONE_TRY(EncodedGeometry geometry,
-                encode_geometry(scene, levels, storage, is_one_level ? std::optional(file.first) : std::nullopt));
+  FileContent content;
+  if (options.layout != FileLayout::OneFile) content.level = file.first;
+  if (options.layout == FileLayout::FilePerLevel && !storage.gltf_name.empty())
+    storage.gltf_name += text("_LOD", file.first);
+  LODESTONE_TRY(EncodedGeometry geometry, encode_geometry(scene, levels, storage, content));
   result.timings_ms.write += stopwatch.lap_ms();
   LODESTONE_CHECK(measure_levels(measured, plan, options, file, geometry.levels(), result, observer));
   result.timings_ms.levels += stopwatch.lap_ms();
@@ -155,6 +179,45 @@ Result<void> make_file(MeasuredScene& measured, const LevelPlan& plan, const std
   return {};
 }
 
+/// What streams lead to in the end, measured as they are decoded.
+Result<void> measure_refined(MeasuredScene& measured, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
+                             const BuildOptions& options, BuildResult& result, BuildObserver& observer) {
+  Stopwatch stopwatch;
+  std::vector<std::vector<AssetLevel>> whole(levels.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    LODESTONE_TRY(const ProgressiveMesh decoded, read_stream(levels[i].stream));
+    whole[i].resize(1);
+    whole[i][0].mesh = extract_level(decoded, kNoIndex);
+  }
+  LODESTONE_CHECK(measure_levels(measured, plan, options, {0, plan.level_count(), 0}, whole, result, observer));
+  if (options.keep_levels) keep_levels(whole, result);
+  result.timings_ms.levels += stopwatch.lap_ms();
+  return {};
+}
+
+/// Writes the file of `FileLayout::Refined`, after measuring what it does not show at first.
+Result<void> make_refined_file(MeasuredScene& measured, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
+                               const BuildOptions& options, BuildResult& result, Notes& notes, const Progress& progress,
+                               BuildObserver& observer) {
+  const std::size_t count = plan.level_count(), shown = count - 1;
+  if (shown > 0) LODESTONE_CHECK(measure_refined(measured, plan, levels, options, result, observer));
+  LODESTONE_CHECK(make_file(measured, plan, levels, options, {shown, count, shown}, result, notes, progress, observer));
+  if (shown > 0) result.levels[0].bytes = result.stream.bytes;
+  return {};
+}
+
+Result<void> check_options(const BuildOptions& options) {
+  if (options.effort < kLeastEffort || options.effort > kMostEffort)
+    return fail(ErrorCode::InvalidArgument,
+                text("effort is ", options.effort, ", not from ", kLeastEffort, " to ", kMostEffort));
+  if (options.layout == FileLayout::Refined && options.targets.size() > 1)
+    return fail(ErrorCode::InvalidArgument,
+                text(options.targets.size(), " targets, where the file shows one level and streams the others"));
+  if (options.layout == FileLayout::Refined && options.storage.position_grid)
+    return fail(ErrorCode::Unsupported, "a grid of a given step, which compact streams do not have");
+  return {};
+}
+
 }  // namespace
 
 Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, BuildObserver& observer) {
@@ -162,9 +225,7 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   BuildResult result;
   Notes notes(result, observer);
   Stopwatch stopwatch;
-  if (options.effort < kLeastEffort || options.effort > kMostEffort)
-    return fail(ErrorCode::InvalidArgument,
-                text("effort is ", options.effort, ", not from ", kLeastEffort, " to ", kMostEffort));
+  LODESTONE_CHECK(check_options(options));
   LODESTONE_CHECK(check_names(options.importance, scene));
   LODESTONE_CHECK(sort_finest_first(options.targets, scene));
 
@@ -183,9 +244,14 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
 
   const Progress writing = stage_progress(observer, BuildStage::Writing);
   if (writes_streams(options))
-    LODESTONE_CHECK(encode_streams(scene, levels, result, notes, writing.part(kStreamsShare)));
+    LODESTONE_CHECK(encode_streams(scene, options, levels, result, notes, writing.part(kStreamsShare)));
   writing.reach(kStreamsShare);
   result.timings_ms.write = stopwatch.lap_ms();
+  if (options.layout == FileLayout::Refined) {
+    LODESTONE_CHECK(
+        make_refined_file(measured, plan, levels, options, result, notes, writing.part(1 - kStreamsShare), observer));
+    return result;
+  }
   const std::size_t file_count = options.layout == FileLayout::FilePerLevel ? plan.level_count() : 1;
   const double share = (1 - kStreamsShare) / static_cast<double>(file_count);
   for (std::size_t i = 0; i < file_count; ++i)

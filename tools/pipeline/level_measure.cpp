@@ -83,8 +83,8 @@ Result<void> measure_levels(MeasuredScene& measured, const LevelPlan& plan, cons
     const std::size_t mesh = i / count, level = i % count, number = file.first + level;
     if (progress.is_cancelled()) return;
     const Progress part = progress.part(share);
-    const bool is_as_it_was =
-        options.storage.compression == Compression::None && is_whole(plan, result.simplified, mesh, number);
+    const bool is_as_it_was = options.storage.compression == Compression::None &&
+                              options.layout != FileLayout::Refined && is_whole(plan, result.simplified, mesh, number);
     if (!is_as_it_was && (level == 0 || !plan.repeats(mesh, number)))
       measure_level(scene, measured.original(mesh), meshes[mesh][level].mesh, part, result.meshes[mesh].levels[number]);
     part.reach(1);

@@ -28,6 +28,9 @@ StopCriteria stop_criteria(const Scene& scene, const SceneMesh& mesh, const Buil
   return stop;
 }
 
+// Compact streams are a fifth smaller than with rounds by cost alone, at hardly any error: see SimplifyOptions.
+constexpr double kDenseRounds = 1.5;
+
 /// How much of the faces goes between two measurements of what bounds are: the less work they may be, the more.
 double measure_step(int effort) {
   if (effort <= 2) return 0.4;
@@ -38,6 +41,7 @@ Result<SimplifyOptions> options_for(const Scene& scene, const SceneMesh& mesh, c
   SimplifyOptions options = build.simplify;
   options.effort = build.effort;
   options.measure_step = measure_step(build.effort);
+  if (build.layout == FileLayout::Refined) options.dense_rounds = kDenseRounds;
   options.stop = stop_criteria(scene, mesh, build);
   options.weights.target_reach = mesh.target_reach;
   LODESTONE_TRY(options.importance, vertex_importance(mesh, build.importance));
@@ -57,7 +61,9 @@ Result<SimplifyResult> simplify_mesh(const Scene& scene, std::size_t mesh, const
 
 }  // namespace
 
-bool writes_streams(const BuildOptions& options) { return options.stream && options.layout == FileLayout::OneFile; }
+bool writes_streams(const BuildOptions& options) {
+  return options.layout == FileLayout::Refined || (options.stream && options.layout == FileLayout::OneFile);
+}
 
 Result<std::vector<SimplifyResult>> simplify_scene(const Scene& scene, const BuildOptions& options,
                                                    BuildObserver& observer) {

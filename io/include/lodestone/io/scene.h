@@ -12,6 +12,7 @@
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/result.h>
 #include <lodestone/io/asset.h>
+#include <lodestone/io/compact_stream.h>
 #include <lodestone/io/read_mesh.h>
 
 namespace lodestone {
@@ -82,9 +83,20 @@ struct LeveledMesh {
   std::vector<std::byte> stream;  ///< the removal stream; empty for none
 };
 
-/// Returns the farthest that Draco will move a vertex of each mesh, in mesh units, where its levels lie in the box of
-/// the mesh; 0 without Draco.
+/// Returns the farthest that compression will move a vertex of each mesh, in mesh units, where its levels lie in the
+/// box of the mesh; 0 without it.
 std::vector<double> quantisation_errors(const Scene& scene, const AssetOptions& options);
+
+/// Returns how each mesh's compact stream is to be encoded: meshes of equal scale share a grid, since they may touch;
+/// it has the bits that the options say, or as many as the shapes need, 8 to 16. The options' own grid is not for
+/// streams.
+std::vector<CompactOptions> compact_options(const Scene& scene, const AssetOptions& options);
+
+/// What of the levels and streams given a file holds.
+struct FileContent {
+  std::optional<std::size_t> level;  ///< this one alone
+  bool streams = true;
+};
 
 /// A scene whose levels are encoded, all but the numbers that the file states of them. Move-only.
 class EncodedGeometry {
@@ -105,11 +117,12 @@ class EncodedGeometry {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Encodes the levels of a scene's meshes, or only one of them: the first half of `encode_scene` and
-/// `encode_scene_level`, between which and the second the levels can be measured as they come out of the file.
-/// Pre: one entry for each of the scene's meshes, which outlive what is returned. Errors: as below.
+/// Encodes the levels of a scene's meshes, or one of them, which a stream may go with that refines it to the whole: the
+/// first half of `encode_scene` and `encode_scene_level`, between which and the second the levels can be measured as
+/// they come out of the file. Pre: one entry for each of the scene's meshes, which outlive what is returned. Errors: as
+/// below.
 Result<EncodedGeometry> encode_geometry(const Scene& scene, std::span<const LeveledMesh> meshes,
-                                        const AssetOptions& options, std::optional<std::size_t> level = {});
+                                        const AssetOptions& options, const FileContent& content = {});
 
 /// Writes the file around the levels, with their numbers: the second half.
 Result<EncodedAsset> write_asset(EncodedGeometry geometry);

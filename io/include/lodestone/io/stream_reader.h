@@ -87,4 +87,7 @@ class StreamReader {
 /// Returns whether bytes begin as a stream of any version does.
 bool is_stream(std::span<const std::byte> bytes);
 
+/// Decodes a stream of any version, whole or cut off behind a chunk. Errors: those of StreamReader.
+Result<ProgressiveMesh> read_stream(std::span<const std::byte> bytes);
+
 }  // namespace lodestone

@@ -22,6 +22,7 @@ enum class Placement {
 enum class FileLayout {
   OneFile,       ///< all levels in one file, by MSFT_lod
   FilePerLevel,  ///< a file for each level; none has a stream
+  Refined,       ///< one file of the coarsest level and a compact stream of every other, up to the whole mesh
 };
 
 /// What is built of a scene.
@@ -36,7 +37,7 @@ struct BuildOptions {
   Importance importance;                       ///< of materials and nodes, by name
   Placement placement = Placement::Optimised;  ///< of each level but the first
   FileLayout layout = FileLayout::OneFile;     ///< one file, or one for each level
-  bool stream = true;                          ///< write each mesh's removal stream, where there is one file
+  bool stream = true;                          ///< write each mesh's removal stream, with all levels in one file
   bool strict = false;                         ///< stop before anything is encoded where a target cannot be met
   bool keep_levels = false;                    ///< keep the levels as the files have them: see `BuildResult::decoded`
   /// How it is stored. The build itself sets `keep_decoded` and, where levels are by error, `position_error`.

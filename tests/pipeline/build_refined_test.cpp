@@ -1,0 +1,150 @@
+// Files of one coarse level and a compact stream that refines it to the whole.
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <lodestone/core/parallel.h>
+#include <lodestone/io/stream_reader.h>
+#include <lodestone/lod/cursor.h>
+#include <lodestone/pipeline/build_asset.h>
+
+#include "support/catch.h"
+#include "support/data.h"
+#include "support/gltf_shapes.h"
+#include "support/mesh_properties.h"
+#include "support/shapes.h"
+
+namespace lodestone::test {
+namespace {
+
+BuildOptions refined(double ratio = 0.1) {
+  BuildOptions options;
+  options.layout = FileLayout::Refined;
+  options.targets = ratio_targets(ratio, 1);
+  return options;
+}
+
+Scene scene_of(const TriangleSoup& soup) { return Scene::from_mesh({mesh_of(soup), {}, {}, {}, {}}, "shape").value(); }
+
+BuildResult built(const Scene& scene, const BuildOptions& options) {
+  auto result = build_asset(scene, options);
+  INFO((result ? std::string() : result.error().message));
+  REQUIRE(result);
+  REQUIRE(result->files.size() == 1);
+  return std::move(*result);
+}
+
+std::vector<Asset::Stream> streams_of(const BuildResult& result) {
+  return Asset::read_bytes(result.files[0].glb).value().streams().value();
+}
+
+Mesh refined_to_the_end(const std::vector<std::byte>& stream) {
+  return extract_level(read_stream(stream).value(), kNoIndex);
+}
+
+const std::vector<TriangleSoup>& shapes() {
+  static const std::vector<TriangleSoup> all = {icosphere(3, 0.02, 7), terrain(16, 3),          seam_sphere(16, 12),
+                                                two_material_grid(12), skinned_cylinder(16, 9), morph_grid(12),
+                                                slit_grid(12)};
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a refined file shows one level, and its stream leads to the whole mesh within its grid") {
+  for (const TriangleSoup& soup : shapes()) {
+    const Scene scene = scene_of(soup);
+    const Mesh& whole = scene.meshes()[0].mesh;
+    const BuildResult result = built(scene, refined());
+    REQUIRE(result.levels.size() == 2);
+    CHECK(result.levels[0].face_count == whole.face_count());
+    CHECK(result.levels[1].face_count <= std::max<std::size_t>(whole.face_count() / 10, 1));
+
+    const Asset asset = Asset::read_bytes(result.files[0].glb).value();
+    REQUIRE(asset.level_count() == 1);
+    CHECK(asset.levels().value()[0].face_count == result.levels[1].face_count);
+    const std::vector<Asset::Stream> streams = streams_of(result);
+    REQUIRE(streams.size() == 1);
+    CHECK(streams[0].bytes.size() == result.levels[0].bytes);
+    const Mesh last = refined_to_the_end(streams[0].bytes);
+    CHECK(last.face_count() == whole.face_count());
+    CHECK(last.wedge_count() == whole.wedge_count());
+    CHECK(last.attributes.size() == whole.attributes.size());
+    const double step = bounding_box(whole).diagonal() / ((1 << 14) - 1);
+    CHECK(measure_deviation(last, whole).maximum() <= step);
+    CHECK(result.levels[0].deviation.maximum() <= step);
+    CHECK(result.levels[1].deviation.maximum() <= 1.01 * result.levels[1].deviation_bound + step);
+  }
+}
+
+TEST_CASE("a refined file names its stream's version, and is no original to build from") {
+  const BuildResult result = built(scene_of(terrain(8, 1)), refined());
+  const GltfFile file = GltfFile::from_glb(result.files[0].glb);
+  const GltfJson& extension = file.json["meshes"][0]["extensions"]["LODESTONE_removal_stream"];
+  CHECK(extension["version"] == "3.0");
+  CHECK(file.view_bytes(extension["bufferView"]) == streams_of(result)[0].bytes);
+  CHECK(file.json.dump().find("MSFT_lod") == std::string::npos);
+  const auto again = Scene::read_bytes(result.files[0].glb, "glb");
+  REQUIRE_FALSE(again);
+  CHECK(again.error().code == ErrorCode::Unsupported);
+  CHECK_THAT(again.error().message, contains("build from the original"));
+  const auto scene = Asset::read_bytes(result.files[0].glb).value().scene();
+  REQUIRE(scene);
+  CHECK(scene->meshes()[0].stream == streams_of(result)[0].bytes);
+}
+
+TEST_CASE("meshes that touch share their stream's grid, so that no crack opens at the end") {
+  GltfMaker maker;
+  const TriangleSoup soup = terrain(12, 5);
+  for (const bool left : {true, false}) {
+    TriangleSoup half = soup;
+    half.indices.clear();
+    for (std::size_t f = 0; f < soup.indices.size(); f += 3) {
+      const float x = (soup.positions[soup.indices[f]].x + soup.positions[soup.indices[f + 1]].x +
+                       soup.positions[soup.indices[f + 2]].x) /
+                      3;
+      if ((x < 0.5F) == left)
+        half.indices.insert(half.indices.end(), {soup.indices[f], soup.indices[f + 1], soup.indices[f + 2]});
+    }
+    add_node(maker, left ? "left" : "right", add_mesh(maker, left ? "left" : "right", half));
+  }
+  const Scene scene = Scene::read_bytes(maker.glb(), "glb").value();
+  REQUIRE(scene.meshes().size() == 2);
+  const std::vector<Asset::Stream> streams = streams_of(built(scene, refined()));
+  REQUIRE(streams.size() == 2);
+  const auto at_border = [](const Mesh& mesh) {
+    std::set<std::array<float, 3>> places;
+    for (const Vec3f& p : mesh.positions)
+      if (std::abs(p.x - 0.5F) < 1e-3F) places.insert({p.x, p.y, p.z});
+    return places;
+  };
+  const auto left = at_border(refined_to_the_end(streams[0].bytes));
+  CHECK(left.size() == 13);
+  CHECK(left == at_border(refined_to_the_end(streams[1].bytes)));
+}
+
+TEST_CASE("a refined file is the same for any number of threads") {
+  const Scene scene = scene_of(seam_sphere(16, 12));
+  std::vector<std::vector<std::byte>> files;
+  for (const std::size_t threads : {1, 2, 5})
+    with_threads(threads, [&] { files.push_back(built(scene, refined()).files[0].glb); });
+  CHECK(files[0] == files[1]);
+  CHECK(files[0] == files[2]);
+}
+
+TEST_CASE("what a refined file cannot have is refused and named") {
+  const Scene scene = scene_of(terrain(8, 1));
+  BuildOptions two = refined();
+  two.targets = ratio_targets(0.5, 2);
+  const auto refused = build_asset(scene, two);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::InvalidArgument);
+  CHECK_THAT(refused.error().message, contains("2 targets"));
+  BuildOptions grid = refined();
+  grid.storage.position_grid = PositionGrid{{}, 0.01F};
+  CHECK(build_asset(scene, grid).error().code == ErrorCode::Unsupported);
+}
+
+}  // namespace lodestone::test
