@@ -10,7 +10,7 @@
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 #include <lodestone/io/scene.h>
-#include <lodestone/io/stream_format.h>
+#include <lodestone/io/stream_reader.h>
 #include <lodestone/io/write_mesh.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/pipeline/scene_target.h>
@@ -76,7 +76,7 @@ Result<StreamedScene> read_streams(const std::filesystem::path& path) {
   for (std::size_t i = 0; i < streamed.scene.meshes().size(); ++i) {
     const SceneMesh& mesh = streamed.scene.meshes()[i];
     if (mesh.stream.empty()) continue;
-    Result<ProgressiveMesh> progressive = decode_stream(mesh.stream);
+    Result<ProgressiveMesh> progressive = read_stream(mesh.stream);
     if (!progressive) {
       return fail(progressive.error().code, quoted(path) + ": " + progressive.error().message,
                   progressive.error().byte_offset);

@@ -10,6 +10,7 @@
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/asset.h>
+#include <lodestone/io/compact_stream.h>
 #include <lodestone/io/scene.h>
 #include <lodestone/io/stream_format.h>
 
@@ -150,10 +151,26 @@ void print_asset(const std::string& path, const DecodedAsset& asset, std::span<c
   for (const ListedStream& stream : streams) print_stream(stream);
 }
 
+constexpr std::uint16_t kCompactVersion = 3;
+
+/// Of a compact stream what there is of it: its chunks are not compressed by themselves, and have no curvature errors.
+Result<StreamDirectory> directory_of(std::span<const std::byte> stream) {
+  const std::uint16_t version = stream_version(stream);
+  if (version < kCompactVersion) return read_stream_directory(stream);
+  LODESTONE_TRY(const std::vector<CompactChunk> chunks, read_compact_chunks(stream));
+  StreamDirectory directory;
+  directory.version_major = version;
+  directory.total_bytes = stream.size();
+  for (const CompactChunk& chunk : chunks)
+    directory.chunks.push_back({chunk.byte_offset, chunk.byte_length, chunk.byte_length, 0, chunk.record_begin,
+                                chunk.record_count, chunk.face_count, chunk.vertex_count, chunk.deviation, 0});
+  return directory;
+}
+
 Result<Outcome> inspect_asset(const std::string& path, const DecodedAsset& asset, bool json) {
   std::vector<ListedStream> streams;
   for (const Asset::Stream& stream : asset.streams) {
-    LODESTONE_TRY(StreamDirectory directory, read_stream_directory(stream.bytes));
+    LODESTONE_TRY(StreamDirectory directory, directory_of(stream.bytes));
     streams.push_back({stream.mesh, std::move(directory)});
   }
   if (json) {

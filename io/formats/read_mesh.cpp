@@ -56,7 +56,7 @@ bool is_wide_text(std::span<const std::byte> bytes) {
 }
 
 /// Reads the finest level that a stream has. Its materials name nothing in it.
-Result<SoupFile> read_stream(std::span<const std::byte> bytes) {
+Result<SoupFile> soup_of_stream(std::span<const std::byte> bytes) {
   StreamReader reader;
   LODESTONE_CHECK(reader.append(bytes));
   LODESTONE_CHECK(reader.finish());
@@ -87,7 +87,7 @@ Result<SoupFile> read_soup(std::span<const std::byte> bytes, const std::string& 
     case Format::Stl:
       return read_stl(bytes);
     case Format::Stream:
-      return read_stream(bytes);
+      return soup_of_stream(bytes);
     case Format::Other:
       break;
   }

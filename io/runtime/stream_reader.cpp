@@ -206,6 +206,11 @@ bool StreamReader::done() const { return state_->done(); }
 const std::optional<Error>& StreamReader::error() const { return state_->error(); }
 const ProgressiveMesh& StreamReader::mesh() const { return state_->mesh(); }
 
+std::uint16_t stream_version(std::span<const std::byte> bytes) {
+  return is_stream(bytes) && bytes.size() >= kMajorAt + sizeof(std::uint16_t) ? load<std::uint16_t>(bytes, kMajorAt)
+                                                                              : 0;
+}
+
 Result<ProgressiveMesh> read_stream(std::span<const std::byte> bytes) {
   StreamReader reader;
   LODESTONE_CHECK(reader.append(bytes));

@@ -9,6 +9,7 @@
 #include <lodestone/lod/cursor.h>
 
 #include "base/files_beside.h"
+#include "codec/compact_layout.h"
 #include "formats/read_mesh_bytes.h"
 #include "gltf/gltf_flatten.h"
 #include "gltf/gltf_scene.h"
@@ -29,7 +30,7 @@ using namespace detail;
 Result<void> refuse_levels(const GltfDocument& document) {
   for (std::size_t mesh = 0; mesh < document.count("meshes"); ++mesh) {
     LODESTONE_TRY(const std::vector<std::byte> stream, stored_stream(document, mesh));
-    if (is_compact(stream))
+    if (stream_version(stream) == kCompactMajor)
       return fail(ErrorCode::Unsupported, text("mesh ", mesh, " is a level of what its stream (", kStreamExtension,
                                                ") refines it to; build from the original"));
   }

@@ -338,7 +338,7 @@ class SceneWriter {
     const std::size_t view = builder_.add_view(stream);
     Json& extensions = builder_.at("meshes", impl_.sources[mesh].mesh)["extensions"];
     if (!extensions.is_object()) extensions = Json::object();
-    extensions[kStreamExtension] = {{"bufferView", view}, {"version", stream_version(stream)}};
+    extensions[kStreamExtension] = {{"bufferView", view}, {"version", version_text(stream)}};
     builder_.use_extension(kStreamExtension);
     layout_.stream_bytes += stream.size();
   }

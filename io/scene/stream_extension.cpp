@@ -2,24 +2,15 @@
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/io/stream_reader.h>
 
 #include "base/bytes.h"
-#include "codec/compact_layout.h"
 
 namespace lodestone::detail {
 
-namespace {
-
-constexpr std::size_t kMajorAt = 8, kMinorAt = 10;
-
-}  // namespace
-
-bool is_compact(std::span<const std::byte> stream) {
-  return stream.size() >= kMinorAt && load<std::uint16_t>(stream, kMajorAt) == kCompactMajor;
-}
-
-std::string stream_version(std::span<const std::byte> stream) {
-  return text(load<std::uint16_t>(stream, kMajorAt), ".", load<std::uint16_t>(stream, kMinorAt));
+std::string version_text(std::span<const std::byte> stream) {
+  constexpr std::size_t kMinorAt = 10;
+  return text(stream_version(stream), ".", load<std::uint16_t>(stream, kMinorAt));
 }
 
 Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh) {

@@ -15,10 +15,7 @@ namespace lodestone::detail {
 inline constexpr const char* kStreamExtension = "LODESTONE_removal_stream";
 
 /// Returns the version that a stream says it has, as "3.0". Pre: its beginning is there.
-std::string stream_version(std::span<const std::byte> stream);
-
-/// Whether a stream is a compact one, of version 3; the mesh that has it may then be any level.
-bool is_compact(std::span<const std::byte> stream);
+std::string version_text(std::span<const std::byte> stream);
 
 /// Returns the stream that a mesh of the document has; empty for none. Errors: Malformed.
 Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh);

@@ -147,3 +147,32 @@ TEST_CASE("a stream has the attributes of its input") {
   const auto json = nlohmann::json::parse(run_program({"inspect", stream, "--json"}).out);
   CHECK(json["attributes"] == nlohmann::json::array({"NORMAL"}));
 }
+
+TEST_CASE("a .glb of --profile stream: inspect lists its chunks, extract takes any level, compare sees what it shows") {
+  const ScratchDirectory folder;
+  const std::string in = write_ball(folder).string(), file = (folder / "ball.glb").string();
+  REQUIRE(run_program({"build", in, "-o", file, "--profile", "stream", "--faces", "100"}).exit_code == 0);
+
+  const ProgramRun inspected = run_program({"inspect", file, "--json"});
+  REQUIRE(inspected.exit_code == 0);
+  const auto json = nlohmann::json::parse(inspected.out);
+  CHECK(json["levels"].size() == 1);
+  CHECK(json["levels"][0]["faces"].get<int>() <= 100);
+  CHECK(json["stream"]["version"] == "3.0");
+  REQUIRE(!json["stream"]["chunks"].empty());
+  CHECK(json["stream"]["chunks"].back()["faces"] == 1280);
+  CHECK_THAT(run_program({"inspect", file}).out, contains("1280"));
+
+  for (const int faces : {1280, 500, 20}) {
+    const std::string level = (folder / "level.obj").string();
+    const ProgramRun run = run_program({"extract", file, level, "--faces", std::to_string(faces)});
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    const auto count = read_mesh(level).value().mesh.face_count();
+    CHECK(count <= static_cast<std::size_t>(faces));
+    CHECK(count >= static_cast<std::size_t>(faces) * 9 / 10);
+  }
+  CHECK_THAT(run_program({"build", file, (folder / "again.glb").string()}).err, contains("build from the original"));
+  CHECK_THAT(run_program({"build", in, file, "--profile", "stream", "--ratio", "0.5,0.1"}).err, contains("one target"));
+  CHECK_THAT(run_program({"build", in, file, "--profile", "stream", "--levels", "3"}).err, contains("one target"));
+}

@@ -87,6 +87,9 @@ class StreamReader {
 /// Returns whether bytes begin as a stream of any version does.
 bool is_stream(std::span<const std::byte> bytes);
 
+/// Returns the major version that a stream says it has, 3 for a compact one; 0 for bytes that are none.
+std::uint16_t stream_version(std::span<const std::byte> bytes);
+
 /// Decodes a stream of any version, whole or cut off behind a chunk. Errors: those of StreamReader.
 Result<ProgressiveMesh> read_stream(std::span<const std::byte> bytes);
 
