@@ -269,7 +269,7 @@ TEST_CASE("values that are missing, doubled or out of range are named") {
                 {"--levels goes with one --ratio"});
   check_refused({"build", "ball.obj"}, {"no output is given", "-o OUT"});
   check_refused({"build"}, {"no input is given"});
-  check_refused({"build", "ball.obj", "out"}, {"does not end in .glb or .gltf", "out.glb", "out/"});
+  check_refused({"build", "ball.obj", "out"}, {"does not end in .glb, .gltf or .lods", "out.glb", "out/"});
   check_refused({"build", "ball.obj", "new.glb", "-o", "o.glb"}, {"2 inputs", "'o.glb'", "'new.glb' does not exist"});
   check_refused({"extract", "ball.obj", "o.glb"}, {"give one value", "--level"});
   check_refused({"extract", "ball.obj", "o.glb", "--level", "1", "--faces", "9"}, {"give one value"});
