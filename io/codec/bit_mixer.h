@@ -15,7 +15,7 @@ namespace lodestone::detail {
 /// Source: logistic mixing as in Mahoney, Adaptive weighing of context models for lossless data compression (2005).
 class BitMixer {
  public:
-  static constexpr int kMostInputs = 10;
+  static constexpr int kMostInputs = 9;
 
   /// One input for each entry of `context_counts`, whose contexts are numbered below it; a set of weights for each of
   /// `selector_count`.
@@ -29,6 +29,9 @@ class BitMixer {
     std::uint16_t one = 32768;  // probability of 1, / 65536
     std::uint16_t seen = 0;
   };
+  template <int N>
+  int code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector);
+
   int input_count_;
   std::array<std::uint32_t, kMostInputs> first_{};  // of each input's counters
   std::vector<Counter> counters_;

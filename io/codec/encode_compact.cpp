@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <unordered_map>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
@@ -141,6 +140,7 @@ class CompactEncoder {
 
   // Of the round at hand.
   std::vector<Index> star_records_;  // by star
+  std::vector<Index> first_star_;    // by record
   std::vector<Index> star_corners_;  // by star: where its half-edges begin in the patches' polygons
   std::vector<Index> joins_;         // by star
   WedgePlan wedge_plan_;

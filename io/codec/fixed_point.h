@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
@@ -30,15 +31,12 @@ constexpr std::int64_t exp2_16(int x) {
   return static_cast<std::int64_t>(std::uint64_t{kExp[x % 16]} << (x / 16) >> 12U);
 }
 
-/// Returns the square root, rounded down.
-constexpr std::uint32_t square_root(std::uint64_t x) {
-  if (x == 0) return 0;
-  std::uint64_t root = std::uint64_t{1} << ((64 - std::countl_zero(x) + 1) / 2);  // not below it
-  for (;;) {
-    const std::uint64_t next = (root + x / root) / 2;
-    if (next >= root) return static_cast<std::uint32_t>(std::min<std::uint64_t>(root, 0xFFFFFFFFU));
-    root = next;
-  }
+/// Returns the square root, rounded down. Floats only find where to look.
+inline std::uint32_t square_root(std::uint64_t x) {
+  auto root = std::min<std::uint64_t>(static_cast<std::uint64_t>(std::sqrt(static_cast<double>(x))), 0xFFFFFFFFU);
+  while (root * root > x) --root;
+  while (root < 0xFFFFFFFFU && (root + 1) * (root + 1) <= x) ++root;
+  return static_cast<std::uint32_t>(root);
 }
 
 /// Divides, rounding to nearest, halves up. Pre: b > 0.

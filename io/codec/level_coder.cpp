@@ -57,7 +57,8 @@ bool LevelCoder::code_patches(BitCoder& coder, const PatchPlan* plan) {
   vertices_.star_end.clear();
   vertices_.sector_end.clear();
   sectors_.clear();
-  return patch_coder_.code(coder, mesh_, positions_, ++round_number_, plan, patches_);
+  has_seams_ = limits_.group_count > 1 || wedges_.size() > wedges_.vertex_count();
+  return patch_coder_.code(coder, mesh_, has_seams_, positions_, ++round_number_, plan, patches_);
 }
 
 bool LevelCoder::code_places(BitCoder& coder, std::span<const Index> joins) {
@@ -179,7 +180,7 @@ bool LevelCoder::code_wedges(BitCoder& coder, const WedgePlan* plan) {
     for (const Index i : vertices_.stars_of(v)) {
       const Star::Spoke* wanted = plan != nullptr ? plan->faces.data() + stars_.face_begin(i) : nullptr;
       const bool is_ear = i < patches_.ears.size();
-      if (!wedge_coder_.code(coder, mesh_, stars_.star(i), stars_.stars[i].closed, is_ear, wanted, wedges_))
+      if (!wedge_coder_.code(coder, mesh_, has_seams_, stars_.star(i), stars_.stars[i].closed, is_ear, wanted, wedges_))
         return false;
       if (!split(i)) return false;
     }

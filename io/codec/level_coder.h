@@ -140,6 +140,7 @@ class LevelCoder {
   AttributeCoder attributes_;
   BitMixer flags_;
   std::uint32_t round_number_ = 0;
+  bool has_seams_ = false;      // in the level before the round
   std::uint64_t corners_left_;  // that polygons of sectors may still have
 
   RoundPatches patches_;

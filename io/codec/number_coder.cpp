@@ -14,12 +14,9 @@ constexpr std::uint32_t kNodes = 20;
 constexpr std::uint32_t kScales = 24;
 constexpr std::uint32_t kFractions = 8;
 
-constexpr std::array<std::uint32_t, 6> kStepContexts = {kNodes * 2 * kScales,
-                                                        kNodes* kFractions * 8,
-                                                        kNodes * 4 * NumberCoder::kHints,
-                                                        kNodes * 4 * NumberCoder::kHints,
-                                                        kNodes* NumberCoder::kHints * 4,
-                                                        kNodes * 8};
+constexpr std::array<std::uint32_t, 5> kStepContexts = {
+    kNodes * 2 * kScales, kNodes* kFractions * 8, kNodes * 4 * NumberCoder::kHints, kNodes * 4 * NumberCoder::kHints,
+    kNodes* NumberCoder::kHints * 4};
 constexpr std::array<std::uint32_t, 2> kRestContexts = {kNodes * 4, kNodes* kScales};
 
 }  // namespace
@@ -37,12 +34,10 @@ std::int64_t NumberCoder::code(BitCoder& coder, std::int64_t number, const Guess
   std::uint32_t side = 0;
   const auto code_step = [&](std::uint32_t node, int bit) {
     const std::uint32_t f = node < 4 ? (side != 0 ? fraction : fraction ^ 7U) : 0;
-    const std::uint32_t contexts[6] = {(node * 2 + (small < 7 ? side : 0)) * kScales + log_scale,
-                                       (node * kFractions + f) * 8 + small,
-                                       (node * 4 + guess.kind) * kHints + guess.hints[0],
-                                       (node * 4 + guess.kind) * kHints + guess.hints[1],
-                                       (node * kHints + guess.hints[2]) * 4 + std::min(small / 2, 3U),
-                                       node * 8 + small};
+    const std::uint32_t contexts[5] = {
+        (node * 2 + (small < 7 ? side : 0)) * kScales + log_scale, (node * kFractions + f) * 8 + small,
+        (node * 4 + guess.kind) * kHints + guess.hints[0], (node * 4 + guess.kind) * kHints + guess.hints[1],
+        (node * kHints + guess.hints[2]) * 4 + std::min(small / 2, 3U)};
     return steps_.code(coder, bit, contexts, node * 4 + guess.kind);
   };
   side = static_cast<std::uint32_t>(code_step(0, number >= first ? 1 : 0));

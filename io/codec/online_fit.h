@@ -52,7 +52,7 @@ class OnlineFit {
   static constexpr std::int64_t kCut = 4096;
   static constexpr int kSolveEach = 16;
   static constexpr int kForget = 8192;
-  static constexpr int kSweeps = 8;
+  static constexpr int kSweeps = 3;
   static constexpr std::int32_t kMostWeight = 16 << kFraction;
 
   static std::int64_t cut(std::int64_t x) { return std::clamp(x, -kCut, kCut); }

@@ -30,20 +30,17 @@ constexpr std::uint32_t kFlats = 8;
 constexpr std::uint32_t kFaceSeams = 3;  // of a face's edges
 constexpr std::uint32_t kSeams = 6;      // whether an edge is one, how many the patch has crossed
 
-constexpr std::array<std::uint32_t, 8> kFaceContexts = {
-    kFaceSeams * kStates * kAges * 4, kStates* kSizes,     kShapes* kShapes * 3,
-    kFaceSeams* kDegrees* kStates,    kAges* kDegrees * 4, kFlats* kFlats* kSizes / 3,
-    4 * 5 * kRatios* kAges,           4 * kStates* kSizes};
-constexpr std::array<std::uint32_t, 10> kEdgeContexts = {kSeams * kCorners * kPairs * kAges,
-                                                         kCorners* kRatios* kPairs,
-                                                         kRatios* kRatios,
-                                                         kCorners* kEnds * 3,
-                                                         kSeams* kCorners* kSizes,
-                                                         kRatios* kAges* kAges * 4,
-                                                         kRatios* kFlats* kCorners,
-                                                         kCorners* kRatios* kRatios,
-                                                         kCorners* kDegrees * 3 * 3,
-                                                         kSeams* kRatios* kRatios* kPairs};
+constexpr std::array<std::uint32_t, 7> kFaceContexts = {kFaceSeams * kStates * kAges * 4,
+                                                        kStates* kSizes,
+                                                        kShapes* kShapes * 3,
+                                                        kFaceSeams* kDegrees* kStates,
+                                                        kAges* kDegrees * 4,
+                                                        kFlats* kFlats* kSizes / 3,
+                                                        4 * 5 * kRatios* kAges};
+constexpr std::array<std::uint32_t, 9> kEdgeContexts = {
+    kCorners * kRatios * kPairs, kRatios* kRatios,           kCorners* kEnds * 3,
+    kSeams* kCorners* kSizes,    kRatios* kAges* kAges * 4,  kRatios* kFlats* kCorners,
+    kCorners* kRatios* kRatios,  kCorners* kDegrees * 3 * 3, kSeams* kRatios* kRatios* kPairs};
 
 enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 
@@ -79,16 +76,20 @@ void PatchCoder::start(const PatchMesh& mesh, std::span<const Vec3i> positions, 
     shorten(n, 15);
     normals_[f] = n;
   }
+  flat_.assign(3 * face_count, 0);
+  edge_logs_.resize(3 * face_count);
+  for (Index h = 0; h < edge_logs_.size(); ++h) {
+    const Index other = mesh.twin(h);
+    edge_logs_[h] = other < h
+                        ? edge_logs_[other]
+                        : static_cast<std::int16_t>(log2_16(squared(positions[mesh.from(h)] - positions[mesh.to(h)])));
+  }
   mean_face_log_ = face_count == 0 ? 0 : static_cast<int>(logs / static_cast<std::int64_t>(face_count));
   around_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const auto degree = static_cast<std::int32_t>(mesh.degree(v));
     around_[v] = {degree, degree, 0};
   }
-}
-
-int PatchCoder::edge_log(Index half) const {
-  return log2_16(squared(positions_[mesh_->from(half)] - positions_[mesh_->to(half)]));
 }
 
 std::uint32_t PatchCoder::state_of(Index half) const {
@@ -104,8 +105,7 @@ std::uint32_t PatchCoder::size_of(Index face) const {
 }
 
 /// 7 for flat edges, less by one for each doubling of the angle's tangent, 0 from a right angle on and at borders.
-std::uint32_t PatchCoder::flatness(Index half) const {
-  if (mesh_->twin(half) == kNoIndex) return 0;
+std::uint32_t PatchCoder::measure_flatness(Index half) const {
   const Vec3i &a = normals_[face_of_corner(half)], &b = normals_[face_of_corner(mesh_->twin(half))];
   const std::int64_t cosine = dot(a, b);
   if (cosine <= 0) return 0;
@@ -113,6 +113,13 @@ std::uint32_t PatchCoder::flatness(Index half) const {
   const Vec3i quarter = {sine.x >> 2, sine.y >> 2, sine.z >> 2};
   const int log_tangent = log2_16(squared(quarter) + 1) + 64 - 2 * log2_16(static_cast<std::uint64_t>(cosine));
   return bucket(-log_tangent, 0, 32, kFlats);
+}
+
+std::uint32_t PatchCoder::flatness(Index half) {
+  const Index other = mesh_->twin(half);
+  if (other == kNoIndex) return 0;
+  if (flat_[half] == 0) flat_[half] = flat_[other] = static_cast<std::uint8_t>(measure_flatness(half) + 1);
+  return flat_[half] - 1U;
 }
 
 bool PatchCoder::code_face(BitCoder& coder, Index face, bool begins) {
@@ -132,7 +139,7 @@ bool PatchCoder::code_face(BitCoder& coder, Index face, bool begins) {
     if (mesh_->twin(h) == kNoIndex) continue;
     const Index beyond = face_of_corner(mesh_->twin(h));
     ages += age(beyond);
-    seams += mesh_->is_seam(h) ? 1 : 0;
+    seams += is_seam(h) ? 1 : 0;
     areas += face_logs_[beyond];
     ++neighbours;
     const std::uint32_t flat_here = flatness(h);
@@ -155,8 +162,7 @@ bool PatchCoder::code_face(BitCoder& coder, Index face, bool begins) {
       (own_age * kDegrees + degree) * 4 + others_age,
       (std::min(flat / 3, kFlats - 1) * kFlats + flattest) * (kSizes / 3) + size / 3,
       ((touched * 5 + static_cast<std::uint32_t>(tight)) * kRatios + bucket(new_degrees, 10, 1, kRatios)) * kAges +
-          own_age,
-      (touched * kStates + state) * kSizes + size};
+          own_age};
   return faces_.code(coder, begins ? 1 : 0, contexts, seams * kStates + state) != 0;
 }
 
@@ -174,7 +180,7 @@ bool PatchCoder::code_edge(BitCoder& coder, Index half, bool goes_on) {
   const Index apex = mesh_->apex(twin);
   const auto corners = static_cast<std::uint32_t>(std::min<std::size_t>(polygon_.size() - 3, kCorners - 1));
   const std::uint32_t pair = plain * 3 + patched;
-  const std::uint32_t seam = std::min(crossed_, 2U) * 2 + (mesh_->is_seam(half) ? 1 : 0);
+  const std::uint32_t seam = std::min(crossed_, 2U) * 2 + (is_seam(half) ? 1 : 0);
   const std::uint32_t relative = bucket(length - lengths / static_cast<int>(polygon_.size() + 1), -32, 5, kRatios);
   const int across = log2_16(squared(positions_[mesh_->apex(half)] - positions_[apex]));
   const std::uint32_t flip = bucket(across - length, -40, 5, kRatios);
@@ -192,7 +198,6 @@ bool PatchCoder::code_edge(BitCoder& coder, Index half, bool goes_on) {
   const std::uint32_t same = mesh_->made_in(face) == mesh_->made_in(beyond) ? 1 : 0;
   const auto at_most_two = [](std::int32_t x) { return static_cast<std::uint32_t>(std::min(x, 2)); };
   const std::uint32_t contexts[] = {
-      ((seam * kCorners + corners) * kPairs + pair) * kAges + age(beyond),
       (corners * kRatios + relative) * kPairs + pair,
       relative * kRatios + flip,
       (corners * kEnds + ends) * 3 + bucket(degree(apex), 3, 2, 3),
@@ -261,7 +266,7 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
       continue;
     }
     decide(beyond, kPatch);
-    crossed_ += mesh_->is_seam(half) ? 1 : 0;
+    crossed_ += is_seam(half) ? 1 : 0;
     patch_faces_.push_back(beyond);
     polygon_[i] = next_corner(twin);
     polygon_.insert(polygon_.begin() + static_cast<std::ptrdiff_t>(i) + 1, previous_corner(twin));
@@ -317,8 +322,9 @@ void PatchCoder::code_ears(BitCoder& coder, const PatchPlan* plan, RoundPatches&
       patches.ears.push_back(h);
 }
 
-bool PatchCoder::code(BitCoder& coder, const PatchMesh& mesh, std::span<const Vec3i> positions, std::uint32_t round,
-                      const PatchPlan* plan, RoundPatches& patches) {
+bool PatchCoder::code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, std::span<const Vec3i> positions,
+                      std::uint32_t round, const PatchPlan* plan, RoundPatches& patches) {
+  has_seams_ = has_seams;
   start(mesh, positions, round);
   patches.patches.clear();
   patches.polygons.clear();

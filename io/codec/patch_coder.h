@@ -44,9 +44,10 @@ class PatchCoder {
  public:
   PatchCoder();
 
-  /// Codes a round's patches; a reader passes no plan. False where what is read is no round.
-  bool code(BitCoder& coder, const PatchMesh& mesh, std::span<const Vec3i> positions, std::uint32_t round,
-            const PatchPlan* plan, RoundPatches& patches);
+  /// Codes a round's patches; a reader passes no plan. Without seams none are looked for. False where what is read is
+  /// no round.
+  bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, std::span<const Vec3i> positions,
+            std::uint32_t round, const PatchPlan* plan, RoundPatches& patches);
 
  private:
   enum State : std::uint8_t { kOpen, kPlain, kPatch };
@@ -73,8 +74,10 @@ class PatchCoder {
   std::uint32_t state_of(Index half) const;  // of the face beyond it; kPlain at a border
   std::uint32_t age(Index face) const;
   std::uint32_t size_of(Index face) const;
-  std::uint32_t flatness(Index half) const;
-  int edge_log(Index half) const;
+  std::uint32_t flatness(Index half);
+  std::uint32_t measure_flatness(Index half) const;
+  bool is_seam(Index half) const { return has_seams_ && mesh_->is_seam(half); }
+  int edge_log(Index half) const { return edge_logs_[half]; }
 
   BitMixer faces_;
   BitMixer edges_;
@@ -88,9 +91,12 @@ class PatchCoder {
   std::vector<Vec3i> normals_;           // by face: not longer than 2^15 or so
   std::vector<std::int16_t> face_logs_;  // by face: of the area, squared
   int mean_face_log_ = 0;
-  std::vector<std::uint8_t> state_;    // by face
-  std::vector<std::uint8_t> decided_;  // by half-edge: that no patch goes on across it
-  std::vector<Around> around_;         // by vertex
+  bool has_seams_ = false;
+  std::vector<std::int16_t> edge_logs_;  // by half-edge: of the length, squared
+  std::vector<std::uint8_t> flat_;       // by half-edge: see flatness, plus 1; 0 where it was not asked for
+  std::vector<std::uint8_t> state_;      // by face
+  std::vector<std::uint8_t> decided_;    // by half-edge: that no patch goes on across it
+  std::vector<Around> around_;           // by vertex
   std::vector<Index> queue_;
 
   // Of the patch at hand.

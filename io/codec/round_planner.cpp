@@ -68,7 +68,7 @@ void RoundPlanner::plan(Index first, Index end) {
   plan_.ear_count = 0;
   loose_.clear();
   fine_.clear();
-  claim_.clear();
+  claim_.assign(3 * level_.face_count(), kNoIndex);
   ear_claim_.clear();
   has_borders_ = false;
   owner_.assign(level_.face_count(), 0);

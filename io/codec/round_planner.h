@@ -42,7 +42,9 @@ class RoundPlanner {
   /// Records that are no patches and ears, in order.
   const std::vector<Index>& loose() const { return loose_; }
   /// What takes the place of an outer half-edge of a planned patch, or stands on the border half-edge of an ear.
-  const FineFace& fine_face(Index half, bool is_ear) const { return fine_[(is_ear ? ear_claim_ : claim_).at(half)]; }
+  const FineFace& fine_face(Index half, bool is_ear) const {
+    return fine_[is_ear ? ear_claim_.at(half) : claim_[half]];
+  }
 
   std::span<const Index> polygon(Index sector) const {
     return std::span(mesh_.polygons).subspan(mesh_.polygon_begin[sector], mesh_.sectors[sector].polygon_size);
@@ -87,7 +89,8 @@ class RoundPlanner {
   PatchPlan plan_;
   std::vector<Index> loose_;
   std::vector<FineFace> fine_;
-  std::unordered_map<Index, Index> claim_, ear_claim_;     // by half-edge: in `fine_`
+  std::vector<Index> claim_;                               // by half-edge: in `fine_`
+  std::unordered_map<Index, Index> ear_claim_;             // the same of ears
   std::unordered_multimap<std::uint64_t, Index> borders_;  // half-edges by their ends
   bool has_borders_ = false;
 

@@ -52,11 +52,12 @@ int WedgeCoder::code_bit(BitCoder& coder, std::uint32_t context, bool bit) {
   return bits_.code(coder, bit ? 1 : 0, std::array<std::uint32_t, 1>{context}, 0);
 }
 
-void WedgeCoder::foretell(const PatchMesh& mesh, std::span<const Index> star, bool closed, bool is_ear, Index used) {
+void WedgeCoder::foretell(const PatchMesh& mesh, bool has_seams, std::span<const Index> star, bool closed, bool is_ear,
+                          Index used) {
   const std::size_t count = star.size();
   std::uint32_t cuts = 0, outers = 0;
   foretold_.centres.assign(count, used);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count && has_seams; ++i) {
     const bool is_cut = (i > 0 || closed) && cut_between(mesh, star[i > 0 ? i - 1 : count - 1], star[i]) == 2;
     cuts += is_cut ? 1 : 0;
     if (i > 0) foretold_.centres[i] = foretold_.centres[i - 1] + (is_cut ? 1 : 0);
@@ -126,11 +127,11 @@ bool WedgeCoder::code_centre(BitCoder& coder, PatchMesh& mesh, std::span<const I
   return true;
 }
 
-bool WedgeCoder::code(BitCoder& coder, PatchMesh& mesh, std::span<const Index> star, bool closed, bool is_ear,
-                      const Star::Spoke* plan, WedgeTable& wedges) {
+bool WedgeCoder::code(BitCoder& coder, PatchMesh& mesh, bool has_seams, std::span<const Index> star, bool closed,
+                      bool is_ear, const Star::Spoke* plan, WedgeTable& wedges) {
   const auto vertex = static_cast<Index>(wedges.vertex_count() - 1);
   const Index used = wedges.count(vertex), first = wedges.begin(vertex);
-  foretell(mesh, star, closed, is_ear, used);
+  foretell(mesh, has_seams, star, closed, is_ear, used);
   if (code_bit(coder, kIsForetold + foretold_.context, plan != nullptr && is_foretold(mesh, star, plan)) != 0) {
     for (std::size_t i = 0; i < star.size(); ++i) {
       if (foretold_.centres[i] == wedges.count(vertex)) wedges.add_wedge();

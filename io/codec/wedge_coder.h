@@ -19,8 +19,9 @@ class WedgeCoder {
   explicit WedgeCoder(Index group_count) : group_count_(group_count) {}
 
   /// Codes the wedges of a star of the last vertex, and adds those that are new. `plan`: what a writer wants, by face;
-  /// centres are numbered within the vertex. False where what is read names none.
-  bool code(BitCoder& coder, PatchMesh& mesh, std::span<const Index> star, bool closed, bool is_ear,
+  /// centres are numbered within the vertex. Without seams in the level before none are looked for. False where what is
+  /// read names none.
+  bool code(BitCoder& coder, PatchMesh& mesh, bool has_seams, std::span<const Index> star, bool closed, bool is_ear,
             const Star::Spoke* plan, WedgeTable& wedges);
   /// Codes how many further wedges the last vertex has, which no face uses yet, up to `most`; adds them.
   bool code_extra(BitCoder& coder, Index count, Index most, WedgeTable& wedges);
@@ -30,7 +31,8 @@ class WedgeCoder {
     std::uint32_t context = 0;
     std::vector<Index> centres;  // by face, within the vertex
   };
-  void foretell(const PatchMesh& mesh, std::span<const Index> star, bool closed, bool is_ear, Index used);
+  void foretell(const PatchMesh& mesh, bool has_seams, std::span<const Index> star, bool closed, bool is_ear,
+                Index used);
   bool is_foretold(const PatchMesh& mesh, std::span<const Index> star, const Star::Spoke* plan) const;
   bool code_side(BitCoder& coder, PatchMesh& mesh, Index face, bool is_ear, const Star::Spoke* plan,
                  const WedgeTable& wedges);

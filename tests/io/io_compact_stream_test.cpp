@@ -270,7 +270,7 @@ TEST_CASE("attributes of every type come back, what is not finite or no unit vec
     soup.attributes.push_back(std::move(attribute));
   };
   const auto any = [&](auto zero) {
-    return [&random, zero](std::size_t) { return static_cast<decltype(zero)>(random.below(1U << 31U)); };
+    return [&random](std::size_t) { return static_cast<decltype(zero)>(random.below(1U << 31U)); };
   };
   add("_A", ComponentType::Int8, 3, any(std::int8_t{}));
   add("_B", ComponentType::UInt8, 1, any(std::uint8_t{}));
