@@ -69,7 +69,9 @@ export class Session {
         else await this.#fetchMore();
       }
     } catch (error) {
+      this.#source.close();
       if (!this.#closed) this.#post({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
+      if (error.code === 'LODESTONE_OUT_OF_MEMORY') return; // nothing can be called any more
     }
     this.#cursor?.destroy();
     this.#stream.destroy();

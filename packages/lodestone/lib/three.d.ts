@@ -1,6 +1,7 @@
 import type { Camera, Group, Material, Sphere } from 'three';
 import type { Level, LodestoneStream, StreamOptions } from './index.js';
 
+/** `deviation` is that before the first `update`: Infinity where nothing is said, so that only the beginning is fetched. */
 export interface MeshOptions extends StreamOptions {
   /** A material, or a function that makes one of a group's number; none: a plain one. */
   material?: Material | ((number: number) => Material);

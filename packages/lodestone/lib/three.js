@@ -55,15 +55,17 @@ export class LodestoneMesh extends Group {
   #stream;
   #attributes = []; // { name, growing }, shared by all meshes
   #indices = []; // by group
-  #wanted = 0;
+  #wanted = Infinity;
 
   /**
    * Opens a stream; resolves when its first level can be drawn. `material`: a material, or a function that makes one of a
    * group's number; none: a plain one. Other options are those of LodestoneStream.open.
    */
-  static async load(url, { material, pixelError = 1, ...options } = {}) {
-    const mesh = new LodestoneMesh(await LodestoneStream.open(url, options), material);
+  static async load(url, { material, pixelError = 1, deviation = Infinity, ...options } = {}) {
+    // How it is seen is not known yet: no more is fetched than its beginning.
+    const mesh = new LodestoneMesh(await LodestoneStream.open(url, { deviation, ...options }), material);
     mesh.pixelError = pixelError;
+    mesh.#wanted = deviation;
     mesh.#apply(await mesh.#stream.next());
     mesh.complete = mesh.#follow();
     mesh.complete.catch(() => {}); // who wants to know awaits it

@@ -5,10 +5,21 @@ import { load } from './wasm.js';
 let runtime;
 const sessions = new Map();
 
+/** One runtime for all streams, and another where that has failed. */
+function sharedRuntime() {
+  runtime ??= load().catch((error) => {
+    runtime = undefined;
+    throw error;
+  });
+  return runtime;
+}
+
 async function open({ id, url, options }) {
   try {
-    runtime ??= load();
-    const session = new Session(await runtime, url, options, (message, transferred = []) => self.postMessage({ id, ...message }, transferred));
+    const session = new Session(await sharedRuntime(), url, options, (message, transferred = []) => {
+      if (message.code === 'LODESTONE_OUT_OF_MEMORY') runtime = undefined;
+      self.postMessage({ id, ...message }, transferred);
+    });
     sessions.set(id, session);
     await session.run();
   } catch (error) {
