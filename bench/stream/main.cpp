@@ -167,10 +167,10 @@ detail::QuantizationGrid attribute_grid(const Attribute& attribute, const Compac
   float range = 0;
   for (std::size_t c = 0; c < size; ++c) range = std::max(range, high[c] - low[c]);
   const bool is_texture = attribute.name.starts_with("TEXCOORD_");
-  const int bits = attribute.name == "NORMAL"               ? options.normal_bits
-                   : is_texture                             ? options.texture_bits
-                   : attribute.name.starts_with("WEIGHTS_") ? options.weight_bits
-                                                            : options.other_bits;
+  const int bits = attribute.name == "NORMAL" || attribute.name == "TANGENT" ? options.normal_bits
+                   : is_texture                                              ? options.texture_bits
+                   : attribute.name.starts_with("WEIGHTS_")                  ? options.weight_bits
+                                                                             : options.other_bits;
   return {low, range > 0 ? range : 1, bits};
 }
 

@@ -13,6 +13,22 @@
 namespace lodestone::detail {
 namespace {
 
+/// Which attributes are coded before which.
+int rank_of(const AttributeSpec& spec) {
+  switch (spec.coding) {
+    case AttributeCoding::Texture:
+      return 0;
+    case AttributeCoding::Directions:
+      return spec.component_count == 3 ? 1 : 2;
+    case AttributeCoding::Weights:
+      return 3;
+    case AttributeCoding::Numbers:
+    case AttributeCoding::kCount:
+      break;
+  }
+  return 0;
+}
+
 constexpr std::string_view kWeights = "WEIGHTS_", kJoints = "JOINTS_";
 
 }  // namespace
@@ -71,9 +87,10 @@ bool ElementCoder::code(BitCoder& coder, const ElementPlace& place, std::span<co
 AttributeCoder::AttributeCoder(std::span<const AttributeSpec> specs) : skin_(std::make_unique<SkinSets>()) {
   for (const AttributeSpec& spec : specs) add_coder(spec);
   find_joints();
-  for (const bool weights : {false, true})
+  // What others are predicted from comes first.
+  for (int rank = 0; rank < 4; ++rank)
     for (std::size_t i = 0; i < coders_.size(); ++i)
-      if ((coders_[i]->spec().coding == AttributeCoding::Weights) == weights) order_.push_back(i);
+      if (rank_of(coders_[i]->spec()) == rank) order_.push_back(i);
   bits.assign(specs.size(), 0);
 }
 
@@ -84,9 +101,11 @@ void AttributeCoder::add_coder(const AttributeSpec& spec) {
     case AttributeCoding::Directions:
       has_directions_ = true;
       coders_.push_back(std::make_unique<DirectionCoder>(spec));
+      if (normal_ == nullptr && spec.component_count == 3) normal_ = coders_.back().get();
       return;
     case AttributeCoding::Texture:
       coders_.push_back(std::make_unique<TextureCoder>(spec));
+      if (texture_ == nullptr) texture_ = coders_.back().get();
       return;
     case AttributeCoding::Weights:
       coders_.push_back(std::make_unique<WeightCoder>(spec, *skin_, skin_->sets.size()));
@@ -151,7 +170,8 @@ bool AttributeCoder::code_base(BitCoder& coder, const PatchMesh& mesh, const Wed
     }
   for (Index w = 0; w < wedges.size(); ++w) {
     const Index near = beside[w] != kNoIndex ? beside[w] : w > 0 ? w - 1 : kNoIndex;
-    if (!code_wedge(coder, {mesh, wedges, positions, normals_, w, {}, {}, near}, given, 0)) return false;
+    if (!code_wedge(coder, {mesh, wedges, positions, normals_, w, {}, {}, texture_, normal_, near}, given, 0))
+      return false;
   }
   return true;
 }
@@ -170,7 +190,8 @@ bool AttributeCoder::code_vertex(BitCoder& coder, const PatchMesh& mesh, const W
         if (std::find(ring_.begin(), ring_.end(), other) == ring_.end()) ring_.push_back(other);
     }
     const Index near = w > 0 ? w - 1 : kNoIndex;
-    if (!code_wedge(coder, {mesh, wedges, positions, normals_, w, faces_, ring_, near}, given, first_given))
+    if (!code_wedge(coder, {mesh, wedges, positions, normals_, w, faces_, ring_, texture_, normal_, near}, given,
+                    first_given))
       return false;
   }
   return true;

@@ -16,6 +16,8 @@
 
 namespace lodestone::detail {
 
+class ElementCoder;
+
 /// What is there before an element of a wedge is coded.
 struct ElementPlace {
   const PatchMesh& mesh;
@@ -23,9 +25,11 @@ struct ElementPlace {
   std::span<const Vec3i> positions;
   std::span<const Vec3i> normals;  ///< by wedge: unit; of the faces that have it, by area
   Index wedge = 0;
-  std::span<const Index> faces;  ///< those that have the wedge as their first; in order, if it has a ring
-  std::span<const Index> ring;   ///< wedges around it, each once
-  Index beside = kNoIndex;       ///< without a ring: a wedge that is likely to have about the same; kNoIndex for none
+  std::span<const Index> faces;           ///< those that have the wedge as their first; in order, if it has a ring
+  std::span<const Index> ring;            ///< wedges around it, each once
+  const ElementCoder* texture = nullptr;  ///< the first texture coordinates, if any; they are coded before directions
+  const ElementCoder* normal = nullptr;   ///< the first normals, if any; they are coded before directions with a sign
+  Index beside = kNoIndex;  ///< without a ring: a wedge that is likely to have about the same; kNoIndex for none
 };
 
 /// The numbers of an attribute so far, and the models that code more.
@@ -101,7 +105,9 @@ class AttributeCoder {
 
   std::unique_ptr<SkinSets> skin_;  // at one address as long as its coders live
   std::vector<std::unique_ptr<ElementCoder>> coders_;
-  std::vector<std::size_t> order_;  // in which attributes are coded: weights come last
+  std::vector<std::size_t> order_;         // in which attributes are coded
+  const ElementCoder* texture_ = nullptr;  // see ElementPlace
+  const ElementCoder* normal_ = nullptr;
   bool has_directions_ = false;
   std::vector<Vec3i> normals_;
   std::vector<Index> faces_, ring_;

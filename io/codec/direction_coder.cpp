@@ -19,14 +19,19 @@ int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(
 std::uint32_t hint(int value, int low, int step) { return bucket(value, low, step, NumberCoder::kHints); }
 std::int64_t length_of(const Vec3i& v) { return square_root(squared(v)); }
 
-/// Normals of the faces around a wedge, with several weights: unit vectors.
-struct Normals {
-  Vec3i even, by_angle;
-  std::int64_t spread = 0;  // mean distance of the faces' from that by area
+/// What the faces around a wedge tell of its direction: unit vectors.
+struct Hints {
+  Vec3i own;                 // what is expected first
+  Vec3i even, third;         // other means
+  Vec3i surface_around;      // of the ring
+  std::int64_t spread = 0;   // mean distance of the faces' from the first
+  bool is_mirrored = false;  // of tangents: whether texture coordinates run the other way round
 };
 
-Normals normals_of(const ElementPlace& place) {
-  Normals result;
+/// Of normals: means of the faces', by area, by number, and nearly by angle.
+Hints normals_of(const ElementPlace& place) {
+  Hints hints;
+  hints.own = place.normals[place.wedge];
   Vec3i even, by_angle;
   for (const Index face : place.faces) {
     const Vec3i& p = place.positions[place.mesh.from(3 * face)];
@@ -34,13 +39,54 @@ Normals normals_of(const ElementPlace& place) {
     const Vec3i b = place.positions[place.mesh.from(3 * face + 2)] - p;
     const Vec3i n = unit(cross(a, b));
     even = even + n;
-    by_angle = by_angle + n * (length_of(unit(a) - unit(b)) >> 4);  // nearly as the angle
-    result.spread += length_of(n - place.normals[place.wedge]);
+    by_angle = by_angle + n * (length_of(unit(a) - unit(b)) >> 4);
+    hints.spread += length_of(n - hints.own);
   }
-  result.even = unit(even);
-  result.by_angle = unit(by_angle);
-  result.spread /= std::max<std::int64_t>(1, static_cast<std::int64_t>(place.faces.size()));
-  return result;
+  hints.even = unit(even);
+  hints.third = unit(by_angle);
+  hints.spread /= std::max<std::int64_t>(1, static_cast<std::int64_t>(place.faces.size()));
+  Vec3i around;
+  for (const Index other : place.ring) around = around + place.normals[other];
+  hints.surface_around = unit(around);
+  return hints;
+}
+
+/// Of tangents: where the first texture coordinate grows, along the surface.
+Hints tangents_of(const ElementPlace& place, const Vec3i& around) {
+  Hints hints;
+  Vec3i normal = place.normals[place.wedge];
+  if (place.normal != nullptr) {
+    const std::span<const std::int32_t> n = place.normal->numbers(place.wedge);
+    normal = unit({n[0], n[1], n[2]});
+  }
+  const auto on_surface = [&](const Vec3i& v) { return unit(v - times(normal, along(v, normal))); };
+  hints.surface_around = on_surface(around);
+  hints.own = hints.even = hints.third = hints.surface_around;
+  if (place.texture == nullptr) return hints;
+  Vec3i sum, even;
+  std::int64_t turns = 0;
+  for (const Index face : place.faces) {
+    const auto at = [&](Index corner, std::size_t c) {
+      return std::int64_t{place.texture->numbers(place.mesh.wedge(3 * face + corner))[c]};
+    };
+    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
+    const Vec3i a = place.positions[place.mesh.from(3 * face + 1)] - p;
+    const Vec3i b = place.positions[place.mesh.from(3 * face + 2)] - p;
+    const std::int64_t au = at(1, 0) - at(0, 0), av = at(1, 1) - at(0, 1);
+    const std::int64_t bu = at(2, 0) - at(0, 0), bv = at(2, 1) - at(0, 1);
+    const int turn = au * bv > bu * av ? 1 : -1;
+    const Vec3i tangent = (a * bv - b * av) * turn;
+    sum = sum + tangent;
+    even = even + unit(tangent);
+    turns += turn;
+  }
+  hints.is_mirrored = turns < 0;
+  if (sum == Vec3i{}) return hints;
+  hints.own = on_surface(unit(sum));
+  hints.even = on_surface(unit(even));
+  hints.third = unit(sum);
+  hints.spread = length_of(hints.third - hints.own);
+  return hints;
 }
 
 }  // namespace
@@ -67,11 +113,13 @@ void DirectionCoder::pass(const ElementPlace& place) {
   note_miss(place.wedge, place.wedge > 0 && place.wedge <= misses_.size() ? misses_[place.wedge - 1] : kUsualMiss);
 }
 
-bool DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
+bool DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored,
+                               std::span<std::int32_t> numbers) {
   std::uint32_t positive = 0;
   for (const Index other : place.ring) positive += number(other, 3) > 0 ? 1 : 0;
   std::uint32_t context = positive == 0 ? 4 : positive == place.ring.size() ? 5 : 6;
   if (place.ring.empty()) context = place.beside != kNoIndex && number(place.beside, 3) > 0 ? 7 : 8;
+  context += is_mirrored ? 5 : 0;
   numbers[3] = bits_.code(coder, numbers[3] > 0 ? 1 : 0, std::array<std::uint32_t, 1>{context}, 0) != 0 ? 1 : -1;
   return true;
 }
@@ -112,32 +160,30 @@ bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_
 }
 
 bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
-  if (numbers.size() > 3 && !code_sign(coder, place, numbers)) return false;
   if (place.ring.empty()) {
+    if (numbers.size() > 3 && !code_sign(coder, place, false, numbers)) return false;
     note_miss(place.wedge, kUsualMiss);
     const Vec3i near = place.beside != kNoIndex ? direction(place.beside) : Vec3i{};
     return code_point(coder, near, 16 * 12, 1, numbers);
   }
-  const Normals normals = normals_of(place);
-  const Vec3i& own = place.normals[place.wedge];
-  const auto count = static_cast<std::int64_t>(place.ring.size());
   const Vec3i around = mean_of_ring(place);
-  Vec3i surface_around;
+  const Hints hints = numbers.size() > 3 ? tangents_of(place, around) : normals_of(place);
+  if (numbers.size() > 3 && !code_sign(coder, place, hints.is_mirrored, numbers)) return false;
+  const Vec3i& own = hints.own;
+  const auto count = static_cast<std::int64_t>(place.ring.size());
   std::int64_t miss_sum = 0, turn = 0, off = 0;
   for (const Index other : place.ring) {
     const Vec3i there = direction(other);
-    surface_around = surface_around + place.normals[other];
     miss_sum += other < misses_.size() ? misses_[other] : kUsualMiss;
     turn += length_of(there - around);
-    off += length_of(there - place.normals[other]);
+    off += length_of(there - (numbers.size() > 3 ? own : place.normals[other]));
   }
-  surface_around = unit(surface_around);
   std::array<Pulls::Features, 3> pulls{};
   Vec3i expected = own;
   for (int c = 0; c < 3; ++c) {
     Pulls::Features& f = pulls[static_cast<std::size_t>(c)];
-    f = {(around[c] - own[c]) / 4, (normals.even[c] - own[c]) / 4, (normals.by_angle[c] - own[c]) / 4,
-         (surface_around[c] - own[c]) / 4};
+    f = {(around[c] - own[c]) / 4, (hints.even[c] - own[c]) / 4, (hints.third[c] - own[c]) / 4,
+         (hints.surface_around[c] - own[c]) / 4};
     expected[c] += 4 * pulls_.predict(f);
   }
   expected = unit(expected);
@@ -145,11 +191,11 @@ bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, st
   const Traits::Features traits = {log_one,
                                    miss_sum / count,
                                    log_of(length_of(around - own)),
-                                   log_of(normals.spread),
+                                   log_of(hints.spread),
                                    log_of(turn / count),
-                                   log_of(length_of(normals.even - own)),
+                                   log_of(length_of(hints.even - own)),
                                    log_of(off / count),
-                                   log_of(length_of(surface_around - own))};
+                                   log_of(length_of(hints.surface_around - own))};
   const auto log_error = static_cast<int>(std::clamp<std::int64_t>(size_.predict(traits), 16, 16 * 14));
   if (!code_point(coder, expected, log_error, 0, numbers)) return false;
 

@@ -9,7 +9,7 @@
 
 namespace lodestone::detail {
 
-/// Codes directions, close to normals of the surface or to those around.
+/// Codes directions: normals close to those of the surface, tangents close to where texture coordinates grow.
 class DirectionCoder final : public ElementCoder {
  public:
   explicit DirectionCoder(const AttributeSpec& spec);
@@ -28,7 +28,7 @@ class DirectionCoder final : public ElementCoder {
   Vec3i mean_of_ring(const ElementPlace& place) const;
   bool code_point(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
                   std::span<std::int32_t> numbers);
-  bool code_sign(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers);
+  bool code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored, std::span<std::int32_t> numbers);
   void note_miss(Index wedge, int miss);
 
   NumberCoder numbers_;
