@@ -10,6 +10,7 @@
 #include "base/json.h"
 #include "formats/read_mesh_bytes.h"
 #include "gltf/gltf_container.h"
+#include "gltf/gltf_document.h"
 #include "mesh/soup_file.h"
 
 namespace lodestone {
@@ -17,18 +18,23 @@ namespace {
 
 using namespace detail;
 
-/// Lists the files that a glTF names beside it.
+/// Lists the files that a glTF names beside it: buffers, images, streams.
 std::set<std::filesystem::path> files_named_by(const Json& document) {
   std::set<std::filesystem::path> files;
-  for (const char* array : {"buffers", "images"}) {
+  const auto add = [&](const Json& item, const char* what) {
+    const std::string uri = string_member(item, "uri");
+    if (uri.empty() || uri.starts_with("data:")) return;
+    if (const auto path = uri_to_path(uri, what)) files.insert(path->lexically_normal());
+  };
+  const auto for_each = [&](const char* array, const auto& visit) {
     const Json* list = find_member(document, array);
-    if (list == nullptr || !list->is_array()) continue;
-    for (const Json& item : *list) {
-      const std::string uri = string_member(item, "uri");
-      if (uri.empty() || uri.starts_with("data:")) continue;
-      if (const auto path = uri_to_path(uri, array)) files.insert(path->lexically_normal());
-    }
-  }
+    if (list == nullptr || !list->is_array()) return;
+    for (const Json& item : *list) visit(item);
+  };
+  for (const char* array : {"buffers", "images"}) for_each(array, [&](const Json& item) { add(item, array); });
+  for_each("meshes", [&](const Json& mesh) {
+    if (const Json* stream = GltfDocument::extension(mesh, kStreamExtension)) add(*stream, kStreamExtension);
+  });
   return files;
 }
 

@@ -83,6 +83,9 @@ class GltfDocument {
   std::shared_ptr<Content> content_ = std::make_shared<Content>();
 };
 
+// The extension of a mesh that names its stream, of any version; docs/stream-format.md describes it.
+inline constexpr const char* kStreamExtension = "LODESTONE_removal_stream";
+
 /// Returns the elements as floats, one after the other; normalized integers as glTF says.
 std::vector<float> to_floats(const AccessorData& data);
 

@@ -149,10 +149,10 @@ Result<std::vector<Asset::Level>> read_levels(const GltfDocument& document, std:
   return levels;
 }
 
-Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document) {
+Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document, const FileFetcher& fetch) {
   std::vector<Asset::Stream> streams;
   for (std::size_t i = 0; i < document.count("meshes"); ++i) {
-    LODESTONE_TRY(std::vector<std::byte> stream, stored_stream(document, i));
+    LODESTONE_TRY(std::vector<std::byte> stream, stored_stream(document, i, fetch));
     if (stream.empty()) continue;
     LODESTONE_TRY(const Json* const mesh, document.element("meshes", "mesh", i));
     streams.push_back({string_member(*mesh, "name"), std::move(stream)});
@@ -216,7 +216,9 @@ Result<std::vector<Asset::Level>> Asset::levels() const {
   return impl_->named(read_levels(impl_->gltf.document, impl_->level_count));
 }
 
-Result<std::vector<Asset::Stream>> Asset::streams() const { return impl_->named(read_streams(impl_->gltf.document)); }
+Result<std::vector<Asset::Stream>> Asset::streams() const {
+  return impl_->named(read_streams(impl_->gltf.document, impl_->gltf.fetch));
+}
 
 Result<Scene> Asset::scene(std::size_t level) const { return impl_->named(scene_of_level(impl_->gltf, level)); }
 

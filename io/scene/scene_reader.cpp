@@ -9,7 +9,6 @@
 #include <lodestone/lod/cursor.h>
 
 #include "base/files_beside.h"
-#include "codec/compact_layout.h"
 #include "formats/read_mesh_bytes.h"
 #include "gltf/gltf_flatten.h"
 #include "gltf/gltf_scene.h"
@@ -29,8 +28,7 @@ using namespace detail;
 
 Result<void> refuse_levels(const GltfDocument& document) {
   for (std::size_t mesh = 0; mesh < document.count("meshes"); ++mesh) {
-    LODESTONE_TRY(const std::vector<std::byte> stream, stored_stream(document, mesh));
-    if (stream_version(stream) == kCompactMajor)
+    if (shows_level_of_stream(document.list("meshes")[mesh]))
       return fail(ErrorCode::Unsupported, text("mesh ", mesh, " is a level of what its stream (", kStreamExtension,
                                                ") refines it to; build from the original"));
   }
@@ -54,8 +52,8 @@ Result<std::map<std::size_t, std::vector<std::size_t>>> find_shown_meshes(const 
 }
 
 /// Reads a mesh's stream. What a grid left no area of the levels, the stream still has.
-Result<void> add_stream(const GltfDocument& document, std::size_t number, SceneMesh& mesh) {
-  LODESTONE_TRY(mesh.stream, stored_stream(document, number));
+Result<void> add_stream(const GltfDocument& document, std::size_t number, const FileFetcher& fetch, SceneMesh& mesh) {
+  LODESTONE_TRY(mesh.stream, stored_stream(document, number, fetch));
   if (mesh.stream.empty() || mesh.mesh.face_count() > 0) return {};
   LODESTONE_TRY(const ProgressiveMesh whole, read_stream(mesh.stream));
   mesh.mesh = extract_level(whole, static_cast<Index>(whole.record_count()));
@@ -68,12 +66,12 @@ const char* why_empty(const GltfDocument& document) {
   return "no node of a scene shows a mesh with triangles";
 }
 
-Result<void> read_meshes(Scene::Impl& scene, bool with_streams) {
+Result<void> read_meshes(Scene::Impl& scene, const FileFetcher& fetch, bool with_streams) {
   LODESTONE_TRY(const auto nodes_of, find_shown_meshes(scene.document));
   for (const auto& [number, nodes] : nodes_of) {
     LODESTONE_TRY(auto joined, join_primitives(scene.document, number));
     if (!joined) continue;
-    if (with_streams) LODESTONE_CHECK(add_stream(scene.document, number, joined->mesh));
+    if (with_streams) LODESTONE_CHECK(add_stream(scene.document, number, fetch, joined->mesh));
     if (joined->mesh.mesh.face_count() == 0) {
       scene.dropped.push_back(joined->mesh.assembly);
       continue;
@@ -108,7 +106,7 @@ std::shared_ptr<Scene::Impl> begin_scene(OpenedGltf& gltf) {
 }
 
 Result<Scene> finish_scene(std::shared_ptr<Scene::Impl> scene, const FileFetcher& fetch, bool with_streams) {
-  LODESTONE_CHECK(read_meshes(*scene, with_streams));
+  LODESTONE_CHECK(read_meshes(*scene, listing(fetch, scene->files), with_streams));
   fetch_images(scene->document, listing(fetch, scene->files), scene->images, scene->notes);
   return Scene(std::move(scene));
 }

@@ -331,14 +331,25 @@ class SceneWriter {
     return Json::array({Json{{"attributes", {{"POSITION", builder_.add("accessors", accessor)}}}}});
   }
 
+  /// What one level is refined by comes later than all else, and by parts: not out of one buffer with it.
+  bool streams_are_files() const { return !options_.gltf_name.empty() && range_.count == 1; }
+
   /// The stream refines to the finest level and so belongs to its mesh; a level without faces has neither.
   void add_stream(std::size_t mesh) {
     const std::vector<std::byte>& stream = meshes_[mesh].stream;
     if (stream.empty() || !shows(mesh, 0)) return;
-    const std::size_t view = builder_.add_view(stream);
+    Json extension;
+    if (streams_are_files()) {
+      const std::string path = text(options_.gltf_name, meshes_.size() > 1 ? text('_', mesh) : "", ".lods");
+      extension["uri"] = uri_of(path);
+      beside_.push_back({path, stream});
+    } else {
+      extension["bufferView"] = builder_.add_view(stream);
+    }
+    extension["version"] = version_text(stream);
     Json& extensions = builder_.at("meshes", impl_.sources[mesh].mesh)["extensions"];
     if (!extensions.is_object()) extensions = Json::object();
-    extensions[kStreamExtension] = {{"bufferView", view}, {"version", version_text(stream)}};
+    extensions[kStreamExtension] = std::move(extension);
     builder_.use_extension(kStreamExtension);
     layout_.stream_bytes += stream.size();
   }

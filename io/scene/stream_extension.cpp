@@ -5,6 +5,7 @@
 #include <lodestone/io/stream_reader.h>
 
 #include "base/bytes.h"
+#include "gltf/gltf_container.h"
 
 namespace lodestone::detail {
 
@@ -13,10 +14,19 @@ std::string version_text(std::span<const std::byte> stream) {
   return text(stream_version(stream), ".", load<std::uint16_t>(stream, kMinorAt));
 }
 
-Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh) {
+bool shows_level_of_stream(const Json& mesh) {
+  const Json* extension = GltfDocument::extension(mesh, kStreamExtension);
+  return extension != nullptr && string_member(*extension, "version").starts_with("3.");
+}
+
+Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh, const FileFetcher& fetch) {
   LODESTONE_TRY(const Json* const json, document.element("meshes", "mesh", mesh));
   const Json* extension = GltfDocument::extension(*json, kStreamExtension);
   if (extension == nullptr) return std::vector<std::byte>{};
+  if (const std::string uri = string_member(*extension, "uri"); !uri.empty()) {
+    LODESTONE_TRY(const std::filesystem::path path, uri_to_path(uri, kStreamExtension));
+    return fetch(path);
+  }
   LODESTONE_TRY(const std::size_t view_index, size_member(*extension, "bufferView", kStreamExtension));
   LODESTONE_TRY(const BufferView view, document.buffer_view(view_index));
   return std::vector<std::byte>(view.bytes.begin(), view.bytes.end());

@@ -7,17 +7,19 @@
 
 #include <lodestone/core/result.h>
 
+#include "base/files_beside.h"
 #include "gltf/gltf_document.h"
 
 namespace lodestone::detail {
 
-// The glTF extension that holds a mesh's stream, of any version; docs/stream-format.md describes it.
-inline constexpr const char* kStreamExtension = "LODESTONE_removal_stream";
-
 /// Returns the version that a stream says it has, as "3.0". Pre: its beginning is there.
 std::string version_text(std::span<const std::byte> stream);
 
-/// Returns the stream that a mesh of the document has; empty for none. Errors: Malformed.
-Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh);
+/// Returns the stream that a mesh of the document has, in the file or beside it; empty for none. Errors: Malformed,
+/// those of `fetch`.
+Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh, const FileFetcher& fetch);
+
+/// Whether what a mesh of the document shows is only a level of what its stream, a compact one, leads to.
+bool shows_level_of_stream(const Json& mesh);
 
 }  // namespace lodestone::detail

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lodestone/core/parallel.h>
+#include <lodestone/io/file.h>
 #include <lodestone/io/stream_reader.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/pipeline/build_asset.h>
@@ -123,6 +124,29 @@ TEST_CASE("meshes that touch share their stream's grid, so that no crack opens a
   const auto left = at_border(refined_to_the_end(streams[0].bytes));
   CHECK(left.size() == 13);
   CHECK(left == at_border(refined_to_the_end(streams[1].bytes)));
+}
+
+TEST_CASE("a refined .gltf has its streams beside it, which readers find") {
+  const Scene scene = scene_of(seam_sphere(16, 12));
+  BuildOptions options = refined();
+  options.storage.gltf_name = "a ball";
+  const BuildResult result = built(scene, options);
+  const ScratchDirectory folder;
+  REQUIRE(write_file(folder / "a ball.gltf", result.files[0].glb));
+  std::uint64_t bytes = result.files[0].glb.size();
+  for (const AssetFile& file : result.files[0].beside) {
+    REQUIRE(write_file(folder / file.path.string(), file.bytes));
+    bytes += file.bytes.size();
+  }
+  CHECK(std::filesystem::exists(folder / "a ball.lods"));
+  const Asset asset = Asset::read(folder / "a ball.gltf").value();
+  CHECK(asset.total_bytes() == bytes);
+  const auto streams = asset.streams();
+  REQUIRE(streams);
+  CHECK(refined_to_the_end((*streams)[0].bytes).face_count() == scene.meshes()[0].mesh.face_count());
+  CHECK(asset.scene().value().meshes()[0].stream == (*streams)[0].bytes);
+  std::filesystem::remove(folder / "a ball.lods");
+  CHECK_FALSE(Asset::read(folder / "a ball.gltf").value().streams());
 }
 
 TEST_CASE("a refined file is the same for any number of threads") {
