@@ -5,9 +5,12 @@
 #include <lodestone/io/stream_reader.h>
 
 #include "base/bytes.h"
+#include "codec/compact_layout.h"
 #include "gltf/gltf_container.h"
 
 namespace lodestone::detail {
+
+bool is_compact(std::span<const std::byte> stream) { return stream_version(stream) == kCompactMajor; }
 
 std::string version_text(std::span<const std::byte> stream) {
   constexpr std::size_t kMinorAt = 10;

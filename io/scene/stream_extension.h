@@ -12,6 +12,9 @@
 
 namespace lodestone::detail {
 
+/// Whether a stream is a compact one.
+bool is_compact(std::span<const std::byte> stream);
+
 /// Returns the version that a stream says it has, as "3.0". Pre: its beginning is there.
 std::string version_text(std::span<const std::byte> stream);
 

@@ -1,0 +1,123 @@
+// Draws a glTF that refines itself by lodestone's plugin for GLTFLoader, beside the one that it was made of.
+import * as THREE from 'three';
+import { LodestonePlugin } from 'lodestone/gltf';
+import { makeLoader } from './scene.js';
+import { similarity } from './ssim.js';
+
+const SIZE = 512;
+const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+renderer.setSize(SIZE, SIZE);
+document.body.append(renderer.domElement);
+
+const scene = new THREE.Scene();
+scene.background = new THREE.Color(0x7088a8);
+const light = new THREE.DirectionalLight(0xffffff, 2.5);
+light.position.set(1, 2, 3);
+scene.add(light, new THREE.AmbientLight(0xffffff, 0.8));
+
+let gltf;
+let mixer;
+let sphere;
+let camera;
+let updates = 0;
+
+/** Loads a file; with the plugin where `refines`. */
+window.openFile = async (url, compression, refines) => {
+  window.closeFile();
+  const loader = makeLoader(compression);
+  if (refines) loader.register((parser) => new LodestonePlugin(parser, { onUpdate: () => ++updates }));
+  gltf = await loader.loadAsync(url);
+  scene.add(gltf.scene);
+  mixer = new THREE.AnimationMixer(gltf.scene);
+  if (gltf.animations.length > 0) mixer.clipAction(gltf.animations[0]).play();
+  mixer.setTime(0);
+  sphere ??= new THREE.Box3().setFromObject(gltf.scene).getBoundingSphere(new THREE.Sphere());
+  camera = new THREE.PerspectiveCamera(35, 1, sphere.radius / 100, sphere.radius * 1000);
+  window.moveTo(3.4);
+  return gltf.userData.lodestone?.meshes.length ?? 0;
+};
+
+window.closeFile = () => {
+  gltf?.userData.lodestone?.dispose();
+  if (gltf) scene.remove(gltf.scene);
+  gltf?.scene.traverse(({ geometry }) => geometry?.dispose());
+  gltf = undefined;
+};
+
+/** Forgets where the last file lay. */
+window.forget = () => {
+  sphere = undefined;
+};
+
+window.moveTo = (radii) => {
+  camera.position.copy(sphere.center).add(new THREE.Vector3(0.5, 0.4, 1).normalize().multiplyScalar(sphere.radius * radii));
+  camera.lookAt(sphere.center);
+  camera.updateMatrixWorld();
+};
+
+window.pose = (time) => mixer.setTime(time);
+
+window.setPixelError = (pixels) => {
+  gltf.userData.lodestone.pixelError = pixels;
+};
+
+window.drawFrame = () => {
+  renderer.render(scene, camera);
+  const meshes = gltf.userData.lodestone?.meshes ?? [];
+  return {
+    drawn: renderer.info.render.triangles,
+    bytes: meshes.reduce((sum, mesh) => sum + mesh.bytes, 0),
+    refined: meshes.filter((mesh) => mesh.level).length,
+    worst: Math.max(0, ...meshes.map((mesh) => mesh.level?.deviation ?? 0)),
+  };
+};
+
+/** Draws frames until nothing changes for a while. */
+window.settle = async (patience = 60) => {
+  let state = window.drawFrame();
+  let known = updates;
+  for (let still = 0; still < patience; ) {
+    await new Promise((resolve) => setTimeout(resolve, 10));
+    const next = window.drawFrame();
+    still = updates === known && next.bytes === state.bytes ? still + 1 : 0;
+    known = updates;
+    state = next;
+  }
+  return state;
+};
+
+/** Waits for all of all streams: with a pixel error of 0 all is wanted. */
+window.finish = async () => {
+  window.setPixelError(0);
+  window.drawFrame();
+  await Promise.all(gltf.userData.lodestone.meshes.map((mesh) => mesh.complete));
+  return window.settle(10);
+};
+
+let kept;
+
+/** The picture, with where it is none of the background. */
+function picture() {
+  const context = renderer.getContext();
+  const rgba = new Uint8Array(4 * SIZE * SIZE);
+  renderer.render(scene, camera);
+  context.readPixels(0, 0, SIZE, SIZE, context.RGBA, context.UNSIGNED_BYTE, rgba);
+  const covered = Uint8Array.from({ length: SIZE * SIZE }, (_, i) =>
+    [0, 1, 2].some((channel) => rgba[4 * i + channel] !== rgba[channel]) ? 1 : 0);
+  return { rgba, covered };
+}
+
+/** Keeps the picture for comparison. */
+window.keepPicture = () => {
+  kept = picture();
+};
+window.likeKept = () => similarity(kept, picture(), SIZE, SIZE);
+
+/** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
+window.hit = () => {
+  const ray = new THREE.Raycaster();
+  ray.setFromCamera(new THREE.Vector2(0, 0), camera);
+  return ray.intersectObject(gltf.scene, true)[0]?.distance ?? null;
+};
+
+window.ready = true;
