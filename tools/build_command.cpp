@@ -82,7 +82,7 @@ Result<Outcome> build_each(const std::vector<BuildCommand>& parts, ProgressBar& 
   for (std::size_t i = 0; i < parts.size(); ++i) {
     progress.start_piece(parts[i].input.filename().string() + ", ", done / whole, (done + work[i]) / whole);
     done += work[i];
-    const Result<Outcome> result = build_one(parts[i], progress);
+    Result<Outcome> result = build_one(parts[i], progress);
     if (result && *result != Outcome::Done) outcome = *result;
     if (result) continue;
     if (result.error().code == ErrorCode::Cancelled) return result;

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
 
@@ -25,8 +26,8 @@ Result<PartImportance> parse_part(const std::filesystem::path& path, const std::
     else if (name == "lock" && value.is_boolean())
       part.lock = value.get<bool>();
     else if (name == "importance" || name == "lock")
-      return malformed(
-          path, where + ": " + name + (name == "lock" ? " is not true or false" : " is not a number of 0 or more"));
+      return malformed(path, detail::text(where, ": ", name,
+                                          name == "lock" ? " is not true or false" : " is not a number of 0 or more"));
     else
       return malformed(path, where + ": no setting is called " + quoted(std::string_view(name)));
   }

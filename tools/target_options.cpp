@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
 #include "error_size.h"
@@ -127,10 +128,11 @@ std::vector<std::string> TargetOptions::remarks(double diagonal, bool in_metres)
   for (const std::string& value : split_lists(error)) {
     const Result<ErrorSize> size = parse_error_size(value);
     if (size->unit == ErrorUnit::File && size->value > kLargeError * diagonal)
-      lines.push_back("--error " + value + " is in the file's units, " + percent_text(size->value, diagonal) +
-                      " of the diagonal; is a percentage meant, write " + value + "%");
+      lines.push_back(detail::text("--error ", value, " is in the file's units, ", percent_text(size->value, diagonal),
+                                   " of the diagonal; is a percentage meant, write ", value, "%"));
     if (size->unit == ErrorUnit::Metre && !in_metres)
-      lines.push_back("--error " + value + ": the format does not say what its unit is; it is taken to be the metre");
+      lines.push_back(
+          detail::text("--error ", value, ": the format does not say what its unit is; it is taken to be the metre"));
   }
   return lines;
 }

@@ -28,7 +28,7 @@ tl::unexpected<Error> refuse(const std::string& what, const std::string& command
               what + "; see lodestone " + (command.empty() ? "" : command + " ") + "--help");
 }
 
-std::string with_answer(std::string text, std::string_view word, const Words& known) {
+std::string with_answer(const std::string& text, std::string_view word, const Words& known) {
   const std::string answer = answer_to(word, known);
   return answer.empty() ? text : text + " (" + answer + ")";
 }

@@ -46,8 +46,8 @@ struct Table {
 };
 
 const Table& table() {
-  static const Table instance;
-  return instance;
+  static const Table kTable;
+  return kTable;
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ class OffReader {
   }
 
  private:
-  tl::unexpected<Error> broken(std::string message) const {
+  tl::unexpected<Error> broken(const std::string& message) const {
     return fail(ErrorCode::Malformed, text("off: line ", words_.line_number(), ": ", message));
   }
 

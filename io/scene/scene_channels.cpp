@@ -95,7 +95,7 @@ std::vector<ChannelMap::Place> places_at(const std::vector<std::size_t>& indices
 
 }  // namespace
 
-void ChannelMap::move_weights(std::size_t node, std::vector<std::size_t> nodes) {
+void ChannelMap::move_weights(std::size_t node, const std::vector<std::size_t>& nodes) {
   places_[{kNodes, node}] = places_at(nodes);
 }
 
@@ -103,7 +103,7 @@ void ChannelMap::move_mesh(std::size_t mesh, std::vector<Place> meshes) {
   places_[{kMeshes, mesh}] = std::move(meshes);
 }
 
-void ChannelMap::move_material(std::size_t material, std::vector<std::size_t> materials) {
+void ChannelMap::move_material(std::size_t material, const std::vector<std::size_t>& materials) {
   places_[{kMaterials, material}] = places_at(materials);
 }
 

@@ -19,11 +19,11 @@ class ChannelMap {
   };
 
   /// Says that the morph target weights of a node are those of other nodes now.
-  void move_weights(std::size_t node, std::vector<std::size_t> nodes);
+  void move_weights(std::size_t node, const std::vector<std::size_t>& nodes);
   /// Says that a mesh has become several.
   void move_mesh(std::size_t mesh, std::vector<Place> meshes);
   /// Says that a material has become several.
-  void move_material(std::size_t material, std::vector<std::size_t> materials);
+  void move_material(std::size_t material, const std::vector<std::size_t>& materials);
 
   /// Lets each animation channel, also by KHR_animation_pointer, move what its target became, one channel for each; one
   /// whose target is gone stays out.

@@ -42,7 +42,7 @@ class FileNames {
     if (stem.ends_with(extension)) stem.resize(stem.size() - extension.size());
     if (take(stem + extension)) return stem + extension;
     for (int serial = 2;; ++serial)
-      if (const std::string path = text(stem, '_', serial, extension); take(path)) return path;
+      if (std::string path = text(stem, '_', serial, extension); take(path)) return path;
   }
 
  private:

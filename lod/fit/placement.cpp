@@ -505,7 +505,7 @@ Mesh LevelFitter::fit(const Mesh& level, const PlacementOptions& options) const 
   Mesh fitted = compacted(level);
   if (fitted.face_count() == 0 || impl_->original.mesh.face_count() == 0) return fitted;
   if (!impl_->attributes) return fitted;
-  const Mesh before = fitted;
+  Mesh before = fitted;
   Fitting(impl_->original, fitted, options).run();
   if (options.progress.is_cancelled()) return before;
   impl_->attributes->look_up(before, fitted);

@@ -23,8 +23,8 @@ constexpr std::string_view kObj =
 
 /// A folder for the files, which goes when the run ends.
 const lodestone::test::ScratchDirectory& folder() {
-  static const lodestone::test::ScratchDirectory directory;
-  return directory;
+  static const lodestone::test::ScratchDirectory kFolder;
+  return kFolder;
 }
 
 /// A new file each time: unlike a replaced one, nobody waits until the disk has it.

@@ -9,7 +9,7 @@
 namespace lodestone::test {
 namespace {
 
-Mesh without_attributes(Mesh mesh) {
+Mesh without_attributes(const Mesh& mesh) {
   TriangleSoup soup = to_soup(mesh);
   soup.attributes.clear();
   soup.face_material.clear();

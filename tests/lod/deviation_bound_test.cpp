@@ -37,7 +37,7 @@ constexpr std::size_t kQueries = kReduced ? 300 : 1500;  // of the referee, each
 constexpr double kRounding = 1e-12;
 
 int between(Random& random, int low, int high) {
-  return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1)));
+  return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low) + 1));
 }
 
 bool one_in(Random& random, std::uint64_t n) { return random.below(n) == 0; }
@@ -61,7 +61,7 @@ TriangleSoup tangle(Random& random) {
 }
 
 TriangleSoup random_shape(Random& random) {
-  static const std::vector<NamedShape> all = all_shapes();
+  static const std::vector<NamedShape> kAll = all_shapes();
   const double noise = one_in(random, 3) ? 0 : power_between(random, -4, -0.5);
   const std::uint64_t seed = random.next();
   switch (random.below(12)) {
@@ -88,7 +88,7 @@ TriangleSoup random_shape(Random& random) {
     case 10:
       return tangle(random);
     default:
-      return all[random.below(all.size())].soup;
+      return kAll[random.below(kAll.size())].soup;
   }
 }
 
@@ -190,7 +190,8 @@ void add_seams(TriangleSoup& soup, Random& random) {
   Attribute attribute{"TEXCOORD_0", ComponentType::Float32, 2, false, {}};
   const auto bytes = std::as_bytes(std::span(values));
   attribute.data.assign(bytes.begin(), bytes.end());
-  soup.attributes.assign(1, std::move(attribute));
+  soup.attributes.clear();
+  soup.attributes.push_back(std::move(attribute));
 }
 
 void add_materials(TriangleSoup& soup, Random& random) {

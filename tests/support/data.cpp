@@ -21,8 +21,8 @@ bool has_mesh_extension(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  static const std::vector<std::string> known = {".obj", ".ply", ".stl", ".gltf", ".glb"};
-  return std::find(known.begin(), known.end(), extension) != known.end();
+  static const std::vector<std::string> kKnown = {".obj", ".ply", ".stl", ".gltf", ".glb"};
+  return std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
 }
 
 }  // namespace

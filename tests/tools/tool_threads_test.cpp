@@ -28,7 +28,7 @@ std::string write_balls(const ScratchDirectory& folder, int count) {
     roots.push_back(maker.add("nodes", {{"mesh", mesh}, {"translation", {4 * i, 0, 0}}}));
   }
   maker.add("scenes", {{"nodes", roots}});
-  const std::string path = (folder / "balls.glb").string();
+  std::string path = (folder / "balls.glb").string();
   const ByteVector glb = maker.glb();
   write_text(path, {reinterpret_cast<const char*>(glb.data()), glb.size()});
   return path;

@@ -3,7 +3,7 @@
 namespace lodestone::detail {
 
 Progress stage_progress(BuildObserver& observer, BuildStage stage, double begin, double end) {
-  const Progress progress(
+  Progress progress(
       [&observer, stage, begin, end](double done) { return observer.progress(stage, begin + (end - begin) * done); });
   progress.reach(0);
   return progress;
