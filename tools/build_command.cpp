@@ -46,7 +46,7 @@ bool writes_to_standard_output(const BuildCommand& options) {
 
 Result<Outcome> build_one(const BuildCommand& options, ProgressBar& progress) {
   if (writes_stream_file(options)) {
-    const Result<Outcome> built = build_stream_file(options, progress);
+    Result<Outcome> built = build_stream_file(options, progress);
     progress.clear();
     return built;
   }

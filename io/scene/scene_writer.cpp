@@ -404,7 +404,7 @@ class SceneWriter {
       const std::size_t added = add_lower_node(mesh, level, name, members);
       if (shows(mesh, level)) shown.push_back(added);
     }
-    channels_.move_weights(node, std::move(shown));
+    channels_.move_weights(node, shown);
   }
 
   std::size_t add_lower_node(std::size_t mesh, std::size_t level, const std::string& name, const Json& finest) {

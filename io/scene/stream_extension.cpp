@@ -14,7 +14,8 @@ bool is_compact(std::span<const std::byte> stream) { return stream_version(strea
 
 std::string version_text(std::span<const std::byte> stream) {
   constexpr std::size_t kMinorAt = 10;
-  return text(stream_version(stream), ".", load<std::uint16_t>(stream, kMinorAt));
+  const bool has_minor = is_stream(stream) && stream.size() >= kMinorAt + sizeof(std::uint16_t);
+  return text(stream_version(stream), ".", has_minor ? load<std::uint16_t>(stream, kMinorAt) : 0);
 }
 
 bool shows_level_of_stream(const Json& mesh) {

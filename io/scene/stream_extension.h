@@ -15,7 +15,7 @@ namespace lodestone::detail {
 /// Whether a stream is a compact one.
 bool is_compact(std::span<const std::byte> stream);
 
-/// Returns the version that a stream says it has, as "3.0". Pre: its beginning is there.
+/// Returns the version that a stream says it has, as "3.0"; "0.0" for bytes that are none.
 std::string version_text(std::span<const std::byte> stream);
 
 /// Returns the stream that a mesh of the document has, in the file or beside it; empty for none. Errors: Malformed,

@@ -46,10 +46,10 @@ Mesh refined_to_the_end(const std::vector<std::byte>& stream) {
 }
 
 const std::vector<TriangleSoup>& shapes() {
-  static const std::vector<TriangleSoup> all = {icosphere(3, 0.02, 7), terrain(16, 3),          seam_sphere(16, 12),
+  static const std::vector<TriangleSoup> kAll = {icosphere(3, 0.02, 7), terrain(16, 3),          seam_sphere(16, 12),
                                                 two_material_grid(12), skinned_cylinder(16, 9), morph_grid(12),
                                                 slit_grid(12)};
-  return all;
+  return kAll;
 }
 
 }  // namespace
