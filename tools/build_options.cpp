@@ -70,6 +70,7 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   if (shows_one_level(options)) {
     if (given->size() > 1 || options.level_count)
       return fail(ErrorCode::InvalidArgument, "--profile stream shows one level: give one target, and no --levels");
+    if (options.no_stream) return fail(ErrorCode::InvalidArgument, "--no-stream: --profile stream is a stream");
     return given->empty() ? ratio_targets(kShownRatio, 1) : given;
   }
   const bool by_ratio = given->empty() || options.targets.is_one_ratio();

@@ -151,8 +151,15 @@ Result<std::vector<Asset::Level>> read_levels(const GltfDocument& document, std:
 
 Result<std::vector<Asset::Stream>> read_streams(const GltfDocument& document, const FileFetcher& fetch) {
   std::vector<Asset::Stream> streams;
+  std::set<std::filesystem::path> files;
+  // A small file cannot ask for a large one again and again.
+  const auto fetch_once = [&](const std::filesystem::path& path) -> Result<std::vector<std::byte>> {
+    if (!files.insert(path).second)
+      return fail(ErrorCode::Malformed, text("two meshes have their stream in '", path.string(), "'"));
+    return fetch(path);
+  };
   for (std::size_t i = 0; i < document.count("meshes"); ++i) {
-    LODESTONE_TRY(std::vector<std::byte> stream, stored_stream(document, i, fetch));
+    LODESTONE_TRY(std::vector<std::byte> stream, stored_stream(document, i, fetch_once));
     if (stream.empty()) continue;
     LODESTONE_TRY(const Json* const mesh, document.element("meshes", "mesh", i));
     streams.push_back({string_member(*mesh, "name"), std::move(stream)});

@@ -47,7 +47,10 @@ Attribute rounded(const Attribute& attribute, const QuantizationGrid& grid) {
   return with_values(attribute, values);
 }
 
-bool are_weights(const Attribute& attribute) { return attribute.name.starts_with("WEIGHTS_"); }
+/// Others of that name are an application's own.
+bool are_weights(const Attribute& attribute) {
+  return attribute.name.starts_with("WEIGHTS_") && attribute.component_count == 4;
+}
 
 /// The float columns of skin weights, each with its grid's exponent.
 struct WeightColumn {
@@ -120,7 +123,8 @@ Json packed_accessor(GlbBuilder& builder, const PackedForm& form) {
 }  // namespace
 
 bool is_packed_direction(const Attribute& attribute) {
-  return attribute.type == ComponentType::Float32 && (attribute.name == "NORMAL" || attribute.name == "TANGENT");
+  return attribute.type == ComponentType::Float32 && ((attribute.name == "NORMAL" && attribute.component_count == 3) ||
+                                                      (attribute.name == "TANGENT" && attribute.component_count == 4));
 }
 
 void round_level(const MeshSource& source, const QuantizationGrids& grids, LevelGeometry& level) {

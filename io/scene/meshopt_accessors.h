@@ -22,7 +22,7 @@ std::size_t add_packed_positions(GlbBuilder& builder, const Mesh& mesh, const Qu
 std::size_t add_packed_attribute(GlbBuilder& builder, const Attribute& attribute, const QuantizationGrid& grid);
 std::size_t add_packed_indices(GlbBuilder& builder, std::span<const Index> indices, std::size_t point_count);
 
-/// Whether an attribute is stored as directions, by the bits of its grid alone.
+/// Whether an attribute is one of directions, stored by the bits of its grid alone.
 bool is_packed_direction(const Attribute& attribute);
 
 }  // namespace lodestone::detail

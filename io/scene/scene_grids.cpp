@@ -31,7 +31,7 @@ constexpr double kStepsPerEdge = 4, kSmallerShare = 0.02;
 // What the exponential filter has room for, without the smallest floats, which its decoders do not make.
 constexpr int kMostBinaryExponent = 100;
 constexpr double kMostMultiple = (1 << 23) - 1;
-constexpr int kMostOctahedralBits = 16;
+constexpr int kLeastOctahedralBits = 2, kMostOctahedralBits = 16;
 
 /// Returns the fewest bits whose grid of such a range has steps of at most `step`.
 int bits_for_step(double range, double step) {
@@ -172,7 +172,8 @@ QuantizationGrid fit_column(const GridFitter& fitter, const Attribute& layout, c
   const Fineness fineness = fineness_of(layout.name, options);
   if (options.compression == Compression::Meshopt) {
     if (!is_packed_direction(layout)) return binary_column_grid(fitter, fineness.bits);
-    return fitter.grid(std::min(layout.name == "NORMAL" ? options.normal_bits : fineness.bits, kMostOctahedralBits));
+    const int bits = layout.name == "NORMAL" ? options.normal_bits : fineness.bits;
+    return fitter.grid(std::clamp(bits, kLeastOctahedralBits, kMostOctahedralBits));
   }
   return layout.name == "NORMAL" ? fitter.grid(options.normal_bits) : column_grid(fitter, fineness);
 }
@@ -203,17 +204,19 @@ QuantizationGrid given_grid(const PositionGrid& given, Compression compression) 
   return {{given.origin.x, given.origin.y, given.origin.z}, std::ldexp(given.step, kBits), kBits};
 }
 
-/// Differences of positions must stay within 32 bits; meshopt's multiples within 24.
+/// Differences of positions must stay within 32 bits; meshopt's multiples of its own step within 24.
 Result<void> check_reach(const PositionGrid& given, Compression compression,
                          std::span<const std::vector<LevelGeometry>> levels) {
-  const double most_steps = compression == Compression::Meshopt ? 1 << 22 : 1 << 29;
+  const bool binary = compression == Compression::Meshopt;
+  const double most_steps = binary ? kMostMultiple : 1 << 29;
+  const double step = binary ? std::ldexp(1.0, std::ilogb(given.step)) : static_cast<double>(given.step);
   double farthest = 0;
   for (const std::vector<LevelGeometry>& mesh : levels)
     for (const LevelGeometry& level : mesh)
       for (const Vec3f& p : level.mesh->positions)
-        farthest = std::max(farthest, axis_distance(Vec3(p), Vec3(given.origin)) / static_cast<double>(given.step));
+        farthest = std::max(farthest, axis_distance(Vec3(p), Vec3(given.origin)) / step);
   if (farthest <= most_steps) return {};
-  return fail(ErrorCode::InvalidArgument, text("positions lie up to ", farthest, " steps of ", given.step,
+  return fail(ErrorCode::InvalidArgument, text("positions lie up to ", farthest, " steps of ", step,
                                                " from the grid's origin, more than ", most_steps));
 }
 

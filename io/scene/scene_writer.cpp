@@ -63,6 +63,9 @@ Result<void> check_options(const AssetOptions& options) {
   if (const auto& grid = options.position_grid; grid && !(grid->step >= kLeastStep && grid->step <= kMostStep))
     return fail(ErrorCode::InvalidArgument,
                 text("the grid's step is ", grid->step, ", not in ", kLeastStep, " to ", kMostStep));
+  const Vec3f origin = options.position_grid ? options.position_grid->origin : Vec3f{};
+  if (options.compression == Compression::Meshopt && !(origin == Vec3f{}))
+    return fail(ErrorCode::InvalidArgument, "meshopt's grids count from 0: the grid's origin cannot be another");
   if (options.draco_compression_level < 0 || options.draco_compression_level > 10)
     return fail(ErrorCode::InvalidArgument,
                 text("draco_compression_level is ", options.draco_compression_level, ", not in 0 to 10"));
@@ -339,7 +342,7 @@ class SceneWriter {
     const std::vector<std::byte>& stream = meshes_[mesh].stream;
     if (stream.empty() || !shows(mesh, 0)) return;
     Json extension;
-    if (streams_are_files()) {
+    if (streams_are_files() && is_compact(stream)) {
       const std::string path = text(options_.gltf_name, meshes_.size() > 1 ? text('_', mesh) : "", ".lods");
       extension["uri"] = uri_of(path);
       beside_.push_back({path, stream});

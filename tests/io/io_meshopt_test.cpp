@@ -1,6 +1,7 @@
 // Geometry packed by meshopt: what EXT_meshopt_compression wants of a file, and what comes out of it again. What holds
 // for every compression is in io_asset_test and io_scene_test.
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -181,6 +182,29 @@ TEST_CASE("skin weights still sum to 1, joints are the same") {
     CHECK(after[i] + after[i + 1] + after[i + 2] + after[i + 3] == 1);
     for (std::size_t k = 0; k < 4; ++k) CHECK(std::remainder(after[i + k], 1.0F / 4096) == 0);
   }
+}
+
+TEST_CASE("what only has the name of weights or directions is data") {
+  Random random(13);
+  TriangleSoup soup = skinned_cylinder(12, 9);
+  const std::size_t count = soup.positions.size();
+  const auto add = [&](const std::string& name, std::uint8_t width) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < width * count; ++i) values.push_back(static_cast<float>(3 * random.unit()));
+    const auto bytes = std::as_bytes(std::span(values));
+    soup.attributes.push_back({name, ComponentType::Float32, width, false, {bytes.begin(), bytes.end()}});
+  };
+  add("WEIGHTS_1", 2);
+  add("NORMAL", 2);
+  add("TANGENT", 3);
+  const Mesh read = finest(packed(scene_of(soup)));
+  for (const char* name : {"_NORMAL", "_TANGENT"}) {
+    const Attribute& a = attribute_named(read, name);
+    CHECK(a.type == ComponentType::Float32);
+    const std::vector<float> values = attribute_values(a);
+    CHECK(*std::max_element(values.begin(), values.end()) > 2);
+  }
+  CHECK(attribute_named(read, "_WEIGHTS_1").component_count == 2);
 }
 
 TEST_CASE("levels with floats fit a file whose directions were packed") {

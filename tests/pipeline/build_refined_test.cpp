@@ -47,8 +47,8 @@ Mesh refined_to_the_end(const std::vector<std::byte>& stream) {
 
 const std::vector<TriangleSoup>& shapes() {
   static const std::vector<TriangleSoup> kAll = {icosphere(3, 0.02, 7), terrain(16, 3),          seam_sphere(16, 12),
-                                                two_material_grid(12), skinned_cylinder(16, 9), morph_grid(12),
-                                                slit_grid(12)};
+                                                 two_material_grid(12), skinned_cylinder(16, 9), morph_grid(12),
+                                                 slit_grid(12)};
   return kAll;
 }
 
@@ -124,6 +124,29 @@ TEST_CASE("meshes that touch share their stream's grid, so that no crack opens a
   const auto left = at_border(refined_to_the_end(streams[0].bytes));
   CHECK(left.size() == 13);
   CHECK(left == at_border(refined_to_the_end(streams[1].bytes)));
+}
+
+TEST_CASE("what a refined file shows has something of each primitive, so that its stream's faces have a place") {
+  TriangleSoup soup = icosphere(3, 0.02, 1);
+  soup.face_material.assign(soup.indices.size() / 3, 1);
+  const TriangleSoup small = tetrahedron();
+  const auto first = static_cast<Index>(soup.positions.size());
+  for (const Vec3f& p : small.positions) soup.positions.push_back({3 + p.x * 0.01F, p.y * 0.01F, p.z * 0.01F});
+  for (const Index i : small.indices) soup.indices.push_back(first + i);
+  soup.face_material.resize(soup.indices.size() / 3, 0);
+  for (const bool vanish : {false, true}) {
+    BuildOptions options = refined(vanish ? 0 : 0.02);
+    options.simplify.vanish = vanish;
+    const BuildResult result = built(scene_of(soup), options);
+    const GltfFile file = GltfFile::from_glb(result.files[0].glb);
+    CHECK(file.json["meshes"][0]["primitives"].size() == 2);
+    const Asset asset = Asset::read_bytes(result.files[0].glb).value();
+    CHECK(asset.levels().value()[0].face_count == result.levels.back().face_count);
+    const Scene shown = asset.scene().value();
+    const Mesh last = refined_to_the_end(shown.meshes()[0].stream);
+    CHECK(std::set<Index>(last.face_material.begin(), last.face_material.end()) == std::set<Index>{0, 1});
+    CHECK(level_surface(shown, std::vector{LeveledMesh{{AssetLevel{last, {}, 0, "whole"}}, {}}}, 0).has_value());
+  }
 }
 
 TEST_CASE("a refined .gltf has its streams beside it, which readers find") {

@@ -55,6 +55,8 @@ function checksOf(site, page, { name, model, path }) {
       whole = await settle();
       await page.ask(() => window.keepPicture());
       await picture('original');
+      assert.equal(await page.ask((url) => window.openFile(url, 'draco', true), site.url(model)), 0);
+      assert.equal((await settle()).drawn, whole.drawn, 'an ordinary file is another with the plugin');
       const meshes = await page.ask((url) => window.openFile(url, 'draco', true), site.url(path));
       assert.ok(meshes > 0);
       await page.ask(() => {

@@ -20,7 +20,7 @@ export interface RefinedMesh {
   readonly level: Level | undefined;
   /** How many bytes of the stream have been decoded. */
   readonly bytes: number;
-  /** Resolves when all of the stream has been decoded, which need not be wanted; rejects with what it fails with. */
+  /** Resolves when all of the stream has been decoded, which need not be wanted, or nothing more is read; rejects with what it fails with. */
   readonly complete: Promise<void>;
 }
 

@@ -8,6 +8,7 @@ const EXTENSION = 'LODESTONE_removal_stream';
 
 /** How much what is wanted must change before it is said again. */
 const STEP = 1.05;
+const PATIENCE = 300; // milliseconds before it is coarsened
 
 /** A mesh of the file with its stream. */
 class RefinedMesh {
@@ -21,6 +22,8 @@ class RefinedMesh {
   #wanted = Infinity;
   #frame = -1;
   #finest = Infinity; // wanted in this frame
+  #needed = 0; // when it was last wanted as fine as it is
+  #url; // of what is in memory
   #closed = false;
 
   constructor(source, shown, parts, options) {
@@ -51,29 +54,34 @@ class RefinedMesh {
 
   /** Is told by each object that shows the mesh how far its levels may lie from the whole. */
   want(deviation, frame) {
+    const now = performance.now();
     if (frame !== this.#frame) {
-      if (this.#finest > this.#wanted * STEP) this.#set(this.#finest); // nobody saw it from so near any more
+      // Several cameras may see it in turn: it gets coarser when none has wanted it as fine for a while.
+      if (this.#finest > this.#wanted * STEP && now - this.#needed > PATIENCE) this.#set(this.#finest);
       this.#frame = frame;
       this.#finest = Infinity;
     }
     this.#finest = Math.min(this.#finest, deviation);
+    if (this.#finest <= this.#wanted * STEP) this.#needed = now;
     if (this.#finest * STEP < this.#wanted) this.#set(this.#finest);
   }
 
   #set(deviation) {
     this.#wanted = deviation;
+    if (this.#closed) return;
     if (this.#stream) this.#stream.want(deviation);
-    else if (deviation < this.#shown.deviation && !this.opening) {
-      this.opening = this.#open().catch((error) => this.reject(error));
+    else if ((deviation < this.#shown.deviation || deviation === 0) && !this.opening) {
+      this.opening = this.#open().catch((error) => this.reject(error)).finally(() => this.#letGo());
     }
   }
 
   async #open() {
     const { worker, fetch } = this.#options;
     const options = { deviation: this.#wanted, ...(worker !== undefined && { worker }), ...(fetch && { fetch }) };
-    const stream = await LodestoneStream.open(await this.#source(), options);
-    if (this.#closed) return stream.close();
+    this.#url = await this.#source();
+    const stream = await LodestoneStream.open(this.#url, options);
     this.#stream = stream;
+    if (this.#closed) return;
     this.#buffers = new StreamBuffers(stream);
     stream.want(this.#wanted);
     for await (const update of stream) {
@@ -81,7 +89,11 @@ class RefinedMesh {
       this.#options.onUpdate?.(this);
       if (stream.complete) this.resolve();
     }
-    return undefined;
+  }
+
+  #letGo() {
+    this.#stream?.close();
+    if (this.#url?.startsWith('blob:')) URL.revokeObjectURL(this.#url);
   }
 
   /** What arrives first is coarser than what is there already: only a level as fine takes its place. */
@@ -93,10 +105,10 @@ class RefinedMesh {
     update.groups.forEach(({ count }, group) => {
       for (const part of this.#parts) {
         if (this.#stream.groups[group].material !== part.primitive) continue;
-        if (first || others[group]) this.#buffers.put(part.geometry, group, part.wanted);
+        if (first || others) this.#buffers.put(part.geometry, group, part.wanted);
         part.geometry.boundingBox ??= new Box3();
         part.geometry.boundingSphere ??= new Sphere();
-        this.#buffers.bound(part.geometry, count, update);
+        this.#buffers.bound(part.geometry, count, update, part.box);
       }
     });
   }
@@ -104,6 +116,7 @@ class RefinedMesh {
   close() {
     this.#closed = true;
     this.#stream?.close();
+    this.resolve();
   }
 }
 
@@ -131,18 +144,21 @@ export class LodestonePlugin {
     this.#options = { pixelError: 1, ...options };
   }
 
-  /** GLTFLoader asks for each mesh. */
-  async loadMesh(number) {
+  /** GLTFLoader asks for each mesh; null at once leaves it to others. */
+  loadMesh(number) {
     const definition = this.#parser.json.meshes[number];
     const extension = definition.extensions?.[EXTENSION];
-    if (!extension?.version?.startsWith('3.')) return null;
+    return extension?.version?.startsWith('3.') ? this.#load(number, definition, extension) : null;
+  }
+
+  async #load(number, definition, extension) {
     const object = await this.#parser.loadMesh(number);
-    const objects = object.isMesh ? [object] : object.children;
+    const objects = object.isGroup ? object.children : [object];
     const parts = definition.primitives.flatMap((primitive, i) => {
       const { geometry, isMesh } = objects[i];
       if (!isMesh) return [];
       const names = attributesOf(primitive);
-      return [{ geometry, primitive: i, wanted: (name) => names.has(name) }];
+      return [{ geometry, primitive: i, wanted: (name) => names.has(name), box: geometry.boundingBox?.clone() }];
     });
     const faceCount = parts.reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.attributes.position).count / 3, 0);
     const shown = { deviation: extension.deviation ?? Infinity, faceCount };

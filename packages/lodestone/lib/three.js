@@ -85,7 +85,7 @@ export class LodestoneMesh extends Group {
     const others = this.#buffers.write(update);
     update.groups.forEach(({ count }, i) => {
       const { geometry } = this.children[i];
-      if (others[i]) this.#buffers.put(geometry, i);
+      if (others) this.#buffers.put(geometry, i);
       this.#buffers.bound(geometry, count, update);
       this.children[i].visible = count > 0;
     });

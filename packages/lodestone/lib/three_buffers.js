@@ -3,6 +3,7 @@
 import { BufferAttribute, Vector3 } from 'three';
 
 const NAMES = {
+  POSITION: 'position',
   NORMAL: 'normal',
   TANGENT: 'tangent',
   TEXCOORD_0: 'uv',
@@ -47,7 +48,7 @@ class GrowingAttribute {
 /** What a stream's attribute is called in a geometry. */
 export const nameOf = (name) => NAMES[name] ?? name.toLowerCase();
 
-const TARGET = /^TARGET_(\d+):(POSITION|NORMAL)$/;
+const TARGET = /^TARGET_(\d+):(POSITION|NORMAL|COLOR_0)$/;
 
 /** The buffers of all groups. */
 export class StreamBuffers {
@@ -63,7 +64,7 @@ export class StreamBuffers {
     add('position', 3, false);
     for (const { name, componentCount, normalized } of stream.attributes) {
       const target = TARGET.exec(name);
-      if (target) add(target[2].toLowerCase(), 3, false, Number(target[1]));
+      if (target) add(nameOf(target[2]), componentCount, normalized, Number(target[1]));
       else add(nameOf(name), componentCount, normalized);
     }
     this.#indices = stream.groups.map(() => new GrowingAttribute(1, false, 3 * whole.faceCount));
@@ -74,7 +75,7 @@ export class StreamBuffers {
     return this.#attributes.some(({ target }) => target !== undefined);
   }
 
-  /** Takes an update; returns by group whether its geometry needs its buffers anew. */
+  /** Takes an update; returns whether geometries need their buffers anew: all of them, since they share those of vertices. */
   write({ wedges, groups, normals }) {
     let grown = false;
     if (wedges.end > wedges.begin) {
@@ -84,11 +85,10 @@ export class StreamBuffers {
       grown ||= this.hasTargets;
     }
     if (normals) grown = this.#writeNormals(normals) || grown;
-    return groups.map(({ ranges }, i) => {
-      let other = grown;
-      for (const { begin, corners } of ranges) other = this.#indices[i].write(begin, corners) || other;
-      return other;
+    groups.forEach(({ ranges }, i) => {
+      for (const { begin, corners } of ranges) grown = this.#indices[i].write(begin, corners) || grown;
     });
+    return grown;
   }
 
   #writeNormals(normals) {
@@ -113,20 +113,24 @@ export class StreamBuffers {
     if (attribute) geometry.setIndex(attribute);
   }
 
-  /** Sets what a geometry draws and where it lies: what is there, and as far around it as what is to come may lie. */
-  bound(geometry, count, { low, high }) {
+  /**
+   * Sets what a geometry draws and where it lies: what is there, as far around it as what is to come may lie, and `box`, where
+   * targets may move it.
+   */
+  bound(geometry, count, { low, high }, box) {
     geometry.setDrawRange(0, count);
     const farthest = this.#stream.chunks[this.#stream.chunksReady - 1].deviation;
     geometry.boundingBox.set(new Vector3(...low), new Vector3(...high)).expandByScalar(farthest);
+    if (box) geometry.boundingBox.union(box);
     geometry.boundingBox.getBoundingSphere(geometry.boundingSphere);
   }
 }
 
 /** How many pixels a unit of the world covers at a sphere's nearest point: see pixels_per_unit in detail_choice.h. */
 export function pixelsPerUnit(camera, height, sphere) {
-  if (camera.isOrthographicCamera) return (height * camera.zoom) / (camera.top - camera.bottom);
+  const [scale, isOrthographic] = [camera.projectionMatrix.elements[5], camera.projectionMatrix.elements[15] === 1];
+  if (isOrthographic) return (height * scale) / 2;
   const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
   const distance = eye.distanceTo(sphere.center) - sphere.radius;
-  if (!(distance > 0)) return Infinity;
-  return height / (2 * distance * Math.tan((camera.getEffectiveFOV() * Math.PI) / 360));
+  return distance > 0 ? (height * scale) / (2 * distance) : Infinity;
 }

@@ -30,7 +30,7 @@ struct AssetLevel {
 /// A grid that positions are quantised in, whatever the meshes: files made one by one agree where their meshes meet.
 struct PositionGrid {
   Vec3f origin;    ///< mesh units, as the next
-  float step = 0;  ///< > 0; no position lies farther than 2²⁹ steps from the origin
+  float step = 0;  ///< > 0; no position lies farther than 2²⁹ steps from the origin, for meshopt 2²³
 };
 
 /// What geometry is compressed by. What is given as bits or a grid is for Draco and meshopt.
