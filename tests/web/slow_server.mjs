@@ -5,8 +5,9 @@ import { createServer } from 'node:http';
 import { join, normalize, sep } from 'node:path';
 
 /**
- * Starts it. `behaviour` may be changed at any time: ranges 'yes' | 'no' | 'wrong'; piece, bytes sent at once; rate, bytes a
- * second; limit, bytes of a file before which it stops; drop, bytes after which each connection breaks.
+ * Starts it. `behaviour` may be changed at any time: ranges 'yes' | 'no' | 'wrong' | 'first', which is the first half whatever
+ * is asked for; piece, bytes sent at once; rate, bytes a second; limit, bytes of a file before which it stops; drop, bytes
+ * after which each connection breaks.
  */
 export async function serveSlowly(folder, behaviour) {
   const asked = [];
@@ -24,6 +25,7 @@ export async function serveSlowly(folder, behaviour) {
     let [first, end] = match ? [Number(match[1]), Math.min(Number(match[2]) + 1, bytes.length)] : [0, bytes.length];
     if (match && first >= bytes.length) return void response.writeHead(416, { 'access-control-allow-origin': '*' }).end();
     asked.push({ first, end, ranged: Boolean(match) });
+    if (match && behaviour.ranges === 'first') [first, end] = [0, Math.ceil(bytes.length / 2)];
     if (match && behaviour.ranges === 'wrong') first = Math.min(first + 100, end - 1);
     response.writeHead(match ? 206 : 200, {
       'content-type': 'application/octet-stream',

@@ -165,8 +165,23 @@ function checksOfStream(path) {
     'a server of ranges': followed({}),
     'a server without ranges': followed({ ranges: 'no' }),
     'a server that answers other ranges': followed({ ranges: 'wrong' }),
+    'a server that answers the first bytes, whatever is asked for': followed({ ranges: 'first' }),
     'connections that break': followed({ drop: 20_000, piece: 5000 }),
     'pieces of 100 bytes, without ranges': followed({ ranges: 'no', piece: 100 }),
+    'what breaks at the same byte each time is given up': () =>
+      served({ ranges: 'no', drop: Math.floor(bytes.length / 2), piece: 1000 }, async (url, server) => {
+        const start = performance.now();
+        await assert.rejects(follow(url), { code: 'NETWORK' });
+        const time = performance.now() - start;
+        assert.ok(server.asked.length <= 6, `${server.asked.length} requests`);
+        assert.ok(time > 400, `${time} ms`);
+        const half = bytes.subarray(0, Math.ceil(bytes.length / 2));
+        const range = { status: 206, headers: { 'content-range': `bytes 0-${half.length - 1}/${bytes.length}` } };
+        let asked = 0;
+        await assert.rejects(follow(url, { fetch: async () => (++asked, new Response(half, range)) }), { code: 'NETWORK', message: /other ranges/ });
+        assert.equal(asked, 3);
+        return `${server.asked.length} requests in ${time.toFixed(0)} ms`;
+      }),
     'no more than what is wanted is fetched': () =>
       served({}, async (url, server) => {
         const deviation = 0.2 * (await LodestoneStream.open(url, { worker: false, module: wasm })).chunks[0].deviation;

@@ -3,12 +3,13 @@
 import { LodestoneError } from './wasm.js';
 
 const LEAST_REQUEST = 1 << 15; // bytes: a request for less is hardly faster
-const MOST_FAILURES = 3; // in a row, without a byte in between
+const MOST_FAILURES = 3; // in a row, without a byte that was wanted in between
+const FIRST_PAUSE = 100; // ms, after a failure; after each further one four times as long
 
-/** Returns where a response's body begins in the file, and how long that is; undefined where it does not say. */
+/** Returns which bytes of the file a response has, { first, last }; undefined where it does not say. */
 function rangeOf(response) {
-  const match = /^bytes (\d+)-\d+\/(\d+|\*)$/.exec(response.headers.get('content-range') ?? '');
-  return match ? Number(match[1]) : undefined;
+  const match = /^bytes (\d+)-(\d+)\/(\d+|\*)$/.exec(response.headers.get('content-range') ?? '');
+  return match ? { first: Number(match[1]), last: Number(match[2]) } : undefined;
 }
 
 export class Source {
@@ -17,6 +18,7 @@ export class Source {
   #abort = new AbortController();
   #reader; // of the response at hand
   #at = 0; // its next byte's place in the file
+  #gave = false; // bytes that were wanted, that response
   #ranges = true; // until the server has answered otherwise
   #failures = 0;
 
@@ -25,16 +27,11 @@ export class Source {
     this.#fetch = fetcher;
   }
 
-  /** Whether parts of the file can be left out for now. */
-  get hasRanges() {
-    return this.#ranges;
-  }
-
   close() {
     this.#abort.abort();
   }
 
-  /** Returns `{ offset, bytes }`, some bytes that begin at or before `begin`; null where the file ends there. */
+  /** Returns `{ offset, bytes }`, some bytes that begin at or before `begin` and end behind it; null where the file ends there. */
   async read(begin, end) {
     for (;;) {
       try {
@@ -42,19 +39,22 @@ export class Source {
           if (!(await this.#request(begin, end))) return null;
         }
         const { done, value } = await this.#reader.read();
-        if (!done && value.length > 0) {
-          this.#failures = 0;
+        if (!done) {
           this.#at += value.length;
+          if (this.#at <= begin) continue; // what was there before, once more: no progress
+          this.#gave = true;
+          this.#failures = 0;
           return { offset: this.#at - value.length, bytes: value };
         }
-        if (!done) continue;
         this.#reader = undefined;
         if (!this.#ranges) return null;
-        if (this.#at < end && ++this.#failures >= MOST_FAILURES) return null;
+        if (!this.#gave) throw new Error('answers with fewer bytes than it says');
       } catch (error) {
         this.#reader = undefined;
         if (error instanceof LodestoneError || this.#abort.signal.aborted) throw error;
         if (++this.#failures >= MOST_FAILURES) throw new LodestoneError('NETWORK', `${this.#url}: ${error.message}`);
+        await new Promise((resolve) => setTimeout(resolve, FIRST_PAUSE * 4 ** (this.#failures - 1)));
+        if (this.#abort.signal.aborted) throw error;
       }
     }
   }
@@ -62,21 +62,23 @@ export class Source {
   /** Asks for bytes; false where the file has none there. */
   async #request(begin, end) {
     await this.#reader?.cancel().catch(() => {});
+    this.#reader = undefined;
     const headers = this.#ranges ? { Range: `bytes=${begin}-${Math.max(end, begin + LEAST_REQUEST) - 1}` } : {};
     const response = await this.#fetch(this.#url, { headers, signal: this.#abort.signal });
     if (response.status === 416) return false;
     if (!response.ok) throw new LodestoneError('NETWORK', `${this.#url}: ${response.status} ${response.statusText}`);
-    const first = response.status === 206 ? rangeOf(response) : 0;
-    if (response.status === 206 && !(first <= begin)) {
+    const range = response.status === 206 ? rangeOf(response) : { first: 0, last: Infinity };
+    if (!range || range.first > begin || range.last < begin) {
       // What it says is not what was asked for: such ranges are not for relying on.
       await response.body.cancel().catch(() => {});
-      if (++this.#failures >= MOST_FAILURES) throw new LodestoneError('NETWORK', `${this.#url}: answers other ranges than asked for`);
+      if (!this.#ranges) throw new LodestoneError('NETWORK', `${this.#url}: answers other ranges than asked for`);
       this.#ranges = false;
-      return this.#request(0, end);
+      return this.#request(begin, end);
     }
     if (response.status !== 206) this.#ranges = false;
     this.#reader = response.body.getReader();
-    this.#at = first;
+    this.#at = range.first;
+    this.#gave = false;
     return true;
   }
 }
