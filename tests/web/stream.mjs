@@ -197,6 +197,25 @@ function checksOfStream(path) {
         assert.ok(bytes.length < 50_000 || fetched < 0.6 * bytes.length, `${fetched} of ${bytes.length}`);
         return `${fetched} of ${bytes.length} bytes, then all`;
       }),
+    'what is wanted while the last update is taken counts': () =>
+      served({}, async (url) => {
+        const stream = await LodestoneStream.open(url, { worker: false, module: wasm });
+        const coarse = stream.chunks[0].deviation;
+        let update = await stream.next();
+        while (!stream.complete || update.level.deviation > 0) update = await stream.next();
+        for (let ticks = 23; ticks >= 0; --ticks) {
+          const { position } = update.level;
+          const next = stream.next();
+          for (let i = 0; i < ticks; ++i) await null;
+          stream.want(ticks % 2 ? coarse : 0);
+          const late = new Promise((_, reject) => setTimeout(reject, 5000, new Error(`nothing after ${ticks} ticks`)).unref());
+          update = await Promise.race([next, late]);
+          assert.notEqual(update.level.position, position);
+          while (update.level.deviation !== 0 && ticks % 2 === 0) update = await stream.next();
+        }
+        stream.close();
+        return 'at 24 moments';
+      }),
     'what is missing or broken is told': () =>
       served({}, async (url) => {
         await assert.rejects(LodestoneStream.open(`${url}.none`, { worker: false, module: wasm }), { code: 'NETWORK', message: /404/ });

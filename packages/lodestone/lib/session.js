@@ -5,18 +5,23 @@ import { Source } from './source.js';
 const MOST_RECORDS = 20_000; // in an update: about a megabyte, which a page takes in a few milliseconds
 const MOST_BYTES = 1 << 18; // in a request, so that what is wanted may change
 
-/** What a promise waits for until somebody calls `wake`. */
+/** What a promise waits for until somebody calls `wake`, which may be before. */
 class Signal {
-  #wake = () => {};
+  #woken = false;
+  #wake;
 
-  wait() {
-    return new Promise((resolve) => {
-      this.#wake = resolve;
-    });
+  async wait() {
+    if (!this.#woken) {
+      await new Promise((resolve) => {
+        this.#wake = resolve;
+      });
+    }
+    this.#woken = false;
   }
 
   wake() {
-    this.#wake();
+    this.#woken = true;
+    this.#wake?.();
   }
 }
 
