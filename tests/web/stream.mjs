@@ -216,6 +216,19 @@ function checksOfStream(path) {
         stream.close();
         return 'at 24 moments';
       }),
+    'several updates may be asked for at once': () =>
+      served({}, async (url) => {
+        const stream = await LodestoneStream.open(url, { worker: false, module: wasm });
+        const asked = stream.chunks.map(() => stream.next());
+        const late = new Promise((_, reject) => setTimeout(reject, 20_000, new Error('not all came')).unref());
+        const positions = (await Promise.race([Promise.all(asked), late])).map(({ level }) => level.position);
+        assert.deepEqual(positions, [...positions].sort((a, b) => a - b));
+        assert.equal(new Set(positions).size, positions.length);
+        const last = [stream.next(), stream.next()];
+        stream.close();
+        assert.deepEqual(await Promise.race([Promise.all(last), late]), [undefined, undefined]);
+        return `${positions.length} updates`;
+      }),
     'what is missing or broken is told': () =>
       served({}, async (url) => {
         await assert.rejects(LodestoneStream.open(`${url}.none`, { worker: false, module: wasm }), { code: 'NETWORK', message: /404/ });

@@ -93,7 +93,7 @@ export class LodestoneStream implements AsyncIterable<Update> {
   /** Says how far levels may lie from the whole mesh, in its units; 0 is the whole. What is not needed is not fetched
    * where the server answers range requests. */
   want(deviation: number): void;
-  /** Returns the next update; undefined once the stream is closed. */
+  /** Returns the next update; undefined once the stream is closed. Several may be asked for at once. */
   next(): Promise<Update | undefined>;
   close(): void;
   [Symbol.asyncIterator](): AsyncIterator<Update>;

@@ -9,24 +9,31 @@ const shared = { worker: undefined, streams: new Map(), last: 0 };
 
 function sharedWorker() {
   if (shared.worker) return shared.worker;
-  shared.worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
-  shared.worker.onmessage = ({ data }) => shared.streams.get(data.id)?.(data);
-  shared.worker.onerror = (event) => {
-    for (const receive of shared.streams.values()) receive({ type: 'error', code: 'UNKNOWN', message: event.message ?? 'the worker failed' });
-    shared.streams.clear();
-    shared.worker = undefined;
+  const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
+  worker.onmessage = ({ data }) => {
+    const receive = shared.streams.get(data.id);
+    if (data.type === 'error') shared.streams.delete(data.id);
+    receive?.(data);
   };
-  return shared.worker;
+  worker.onerror = worker.onmessageerror = (event) => {
+    worker.terminate();
+    shared.worker = undefined;
+    const streams = [...shared.streams.values()];
+    shared.streams.clear();
+    for (const receive of streams) receive({ type: 'error', code: 'UNKNOWN', message: event.message ?? 'the worker failed' });
+  };
+  shared.worker = worker;
+  return worker;
 }
 
 /** Talks to a session in the worker. */
 function connectWorker(url, options, receive) {
   const id = ++shared.last;
   const worker = sharedWorker();
-  shared.streams.set(id, receive);
   const send = (message) => worker.postMessage({ id, ...message });
   const { deviation, slack, normals, mostBytes } = options; // what can be sent
   send({ type: 'open', url, options: { deviation, slack, normals, mostBytes } });
+  shared.streams.set(id, receive);
   return {
     want: (deviation) => send({ type: 'want', deviation }),
     acknowledge: () => send({ type: 'acknowledge' }),
@@ -74,7 +81,7 @@ function connectHere(url, options, receive) {
 export class LodestoneStream {
   #session;
   #queue = [];
-  #waiting; // for an update
+  #waiting = []; // for an update, in their order
   #error;
   #closed = false;
   #owes = false; // an acknowledgement
@@ -108,7 +115,12 @@ export class LodestoneStream {
       this.#error = new LodestoneError(message.code, message.message);
       this.#opened.reject(this.#error);
     }
-    this.#waiting?.();
+    this.#wake();
+  }
+
+  /** Has those who wait look again. */
+  #wake() {
+    for (const resolve of this.#waiting.splice(0)) resolve();
   }
 
   /** Whether all of it has been decoded. */
@@ -124,21 +136,19 @@ export class LodestoneStream {
   close() {
     this.#closed = true;
     this.#session.close();
-    this.#waiting?.();
+    this.#wake();
   }
 
   /** Returns the next update; undefined once the stream is closed. */
   async next() {
-    if (this.#owes) {
-      this.#owes = false;
-      this.#session.acknowledge();
-    }
     while (this.#queue.length === 0) {
       if (this.#closed) return undefined;
       if (this.#error) throw this.#error;
-      await new Promise((resolve) => {
-        this.#waiting = resolve;
-      });
+      if (this.#owes) {
+        this.#owes = false;
+        this.#session.acknowledge();
+      }
+      await new Promise((resolve) => this.#waiting.push(resolve));
     }
     this.#owes = true;
     return this.#queue.shift();
