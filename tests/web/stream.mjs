@@ -121,6 +121,14 @@ function checksOfModule() {
       assert.throws(() => runtime.createStream().append(0, removal), { code: 'LODESTONE_UNSUPPORTED', message: /version 1, where 3 to 3/ });
       return 'magic, version, no chunk yet';
     },
+    'numbers out of range are refused': async () => {
+      const runtime = await load(wasm);
+      for (const mostBytes of [NaN, -1, 0, 0.5, Infinity]) assert.throws(() => runtime.createStream({ mostBytes }), RangeError);
+      for (const offset of [NaN, -1, 2 ** 64]) assert.throws(() => runtime.createStream().append(offset, new Uint8Array(1)), RangeError);
+      for (const wrong of [{ deviation: NaN }, { deviation: -1 }, { mostBytes: 0 }])
+        await assert.rejects(LodestoneStream.open('http://localhost/', { worker: false, module: wasm, ...wrong }), RangeError);
+      return 'mostBytes, offset, deviation';
+    },
   };
 }
 
@@ -203,6 +211,7 @@ function checksOfStream(path) {
         const coarse = stream.chunks[0].deviation;
         let update = await stream.next();
         while (!stream.complete || update.level.deviation > 0) update = await stream.next();
+        for (const wrong of [NaN, -1, undefined]) assert.throws(() => stream.want(wrong), RangeError);
         for (let ticks = 23; ticks >= 0; --ticks) {
           const { position } = update.level;
           const next = stream.next();

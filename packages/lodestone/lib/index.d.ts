@@ -74,7 +74,8 @@ export interface StreamOptions {
  * and throws what it fails with; a stream whose bytes have all arrived goes on, since what is wanted may change.
  */
 export class LodestoneStream implements AsyncIterable<Update> {
-  /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. Rejects with a LodestoneError. */
+  /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. Rejects with a LodestoneError,
+   * or a RangeError where an option is out of its range. */
   static open(url: string | URL, options?: StreamOptions): Promise<LodestoneStream>;
 
   readonly chunks: Chunk[];
@@ -90,8 +91,8 @@ export class LodestoneStream implements AsyncIterable<Update> {
   /** Whether all of it has been decoded. */
   readonly complete: boolean;
 
-  /** Says how far levels may lie from the whole mesh, in its units; 0 is the whole. What is not needed is not fetched
-   * where the server answers range requests. */
+  /** Says how far levels may lie from the whole mesh, in its units; 0 is the whole, Infinity the base mesh. What is not
+   * needed is not fetched where the server answers range requests. Throws a RangeError for what is negative or NaN. */
   want(deviation: number): void;
   /** Returns the next update; undefined once the stream is closed. Several may be asked for at once. */
   next(): Promise<Update | undefined>;

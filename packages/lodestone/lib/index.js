@@ -1,5 +1,5 @@
 // Streams of meshes for pages: LodestoneStream.open(url), then levels as they arrive.
-import { LodestoneError, load } from './wasm.js';
+import { LodestoneError, checkRange, load } from './wasm.js';
 import { Session } from './session.js';
 
 export { LodestoneError };
@@ -89,6 +89,8 @@ export class LodestoneStream {
 
   /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. */
   static async open(url, options = {}) {
+    checkRange('deviation', options.deviation ?? 0, 0, Infinity);
+    checkRange('mostBytes', options.mostBytes ?? 1, 1, Number.MAX_SAFE_INTEGER);
     const stream = new LodestoneStream();
     const base = globalThis.location?.href;
     await stream.#start(String(new URL(url, base)), options);
@@ -128,8 +130,9 @@ export class LodestoneStream {
     return this.chunks !== undefined && this.chunksReady === this.chunks.length;
   }
 
-  /** Says how far levels may lie from the whole mesh, in its units. 0, the default, is the whole. */
+  /** Says how far levels may lie from the whole mesh, in its units. 0, the default, is the whole; Infinity is the base mesh. */
   want(deviation) {
+    checkRange('deviation', deviation, 0, Infinity);
     this.#session.want(deviation);
   }
 

@@ -10,6 +10,11 @@ export class LodestoneError extends Error {
   }
 }
 
+/** Throws a RangeError for a number that is below `least` or above `most`, or none: the module would end at it. */
+export function checkRange(name, number, least, most) {
+  if (!(number >= least && number <= most)) throw new RangeError(`${name} is ${number}`);
+}
+
 const COMPONENTS = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
 
 /** Compiles the module: the one beside this file, or what is given as bytes, a Response or a WebAssembly.Module. */
@@ -95,6 +100,7 @@ export class Runtime {
 
 export class Stream {
   constructor(runtime, mostBytes) {
+    checkRange('mostBytes', mostBytes, 1, Number.MAX_SAFE_INTEGER);
     this.runtime = runtime;
     this.handle = runtime.call('stream_create', mostBytes);
     if (this.handle === 0) throw new LodestoneError('LODESTONE_OUT_OF_MEMORY', 'no stream');
@@ -116,6 +122,7 @@ export class Stream {
   /** Takes bytes from `offset` on, an Uint8Array. */
   append(offset, bytes) {
     const { runtime } = this;
+    checkRange('offset', offset, 0, Number.MAX_SAFE_INTEGER);
     const at = runtime.allocate(bytes.length);
     try {
       new Uint8Array(runtime.exports.memory.buffer, at, bytes.length).set(bytes);
