@@ -43,6 +43,66 @@ function addToSum(sum, array) {
   return sum;
 }
 
+/** Returns the module with a memory that ends at so many pages of 64 KiB. */
+function withMemory(pages) {
+  const bytes = Uint8Array.from(wasm);
+  let at = 8;
+  const number = () => {
+    for (let value = 0, shift = 0; ; shift += 7) {
+      value += (bytes[at] & 127) << shift;
+      if (bytes[at++] < 128) return value;
+    }
+  };
+  for (;;) {
+    const id = bytes[at++];
+    const next = number() + at;
+    if (id === 5) break; // the section of memories: their number, flags, least, most
+    at = next;
+  }
+  assert.deepEqual([number(), number()], [1, 1]);
+  number();
+  const begin = at;
+  assert.equal(number(), 32768); // three bytes, which hold any number of pages
+  bytes.set([(pages & 127) | 128, ((pages >> 7) & 127) | 128, pages >> 14], begin);
+  return bytes;
+}
+
+/** Loads worker.js here, with a module of so much memory; returns what opens a stream there, and the messages by stream. */
+async function startWorker(pages) {
+  const fetchAsEver = globalThis.fetch;
+  globalThis.fetch = (url, ...more) => (String(url).endsWith('/lodestone.wasm') ? new Response(withMemory(pages)) : fetchAsEver(url, ...more));
+  const messages = new Map();
+  let changed = () => {};
+  const self = {
+    postMessage({ id, ...message }) {
+      messages.set(id, [...(messages.get(id) ?? []), message]);
+      if (message.type === 'update') setTimeout(() => self.onmessage({ data: { id, type: 'acknowledge' } }));
+      changed();
+    },
+  };
+  globalThis.self = self;
+  await import(join(options.package, 'lib', 'worker.js'));
+  return {
+    send: (data) => self.onmessage({ data }),
+    /** Resolves once a stream's messages are as wanted. */
+    async until(id, isWanted) {
+      const end = Date.now() + 20_000;
+      while (!isWanted(messages.get(id) ?? [])) {
+        assert.ok(Date.now() < end, `stream ${id}: ${messages.get(id)?.map(({ type }) => type)}`);
+        await new Promise((resolve) => {
+          changed = resolve;
+          setTimeout(resolve, 1000);
+        });
+      }
+      return messages.get(id);
+    },
+    close() {
+      globalThis.fetch = fetchAsEver;
+      delete globalThis.self;
+    },
+  };
+}
+
 /** As stream_sums.c has it. */
 function sumOfLevel(stream, cursor, position) {
   cursor.seek(position);
@@ -128,6 +188,44 @@ function checksOfModule() {
       for (const wrong of [{ deviation: NaN }, { deviation: -1 }, { mostBytes: 0 }])
         await assert.rejects(LodestoneStream.open('http://localhost/', { worker: false, module: wasm, ...wrong }), RangeError);
       return 'mostBytes, offset, deviation';
+    },
+  };
+}
+
+/** What happens where the module has no memory left: too little for the one stream, enough for the other. */
+function checksOfMemory(large, small) {
+  return {
+    'the module without memory says so': async () => {
+      const runtime = await load(withMemory(256));
+      const stream = runtime.createStream();
+      const bytes = new Uint8Array(readFileSync(large));
+      const append = () => {
+        for (let begin = 0; begin < bytes.length; begin = stream.state.dueBegin) stream.append(begin, bytes.subarray(begin, stream.state.dueEnd));
+      };
+      assert.throws(append, { code: 'LODESTONE_OUT_OF_MEMORY', message: /^stream_append/ });
+      assert.throws(() => stream.state, { code: 'LODESTONE_OUT_OF_MEMORY', message: /^stream_append/ });
+      return 'from then on';
+    },
+    'all streams of its worker fail, and the next has another': async () => {
+      const server = await serveSlowly(folder, {});
+      const worker = await startWorker(256);
+      try {
+        const open = (id, path, more = {}) => worker.send({ type: 'open', id, url: `${server.address}/${basename(path)}`, options: more });
+        const isWhole = (messages) => messages.at(-1)?.level?.deviation === 0;
+        const hasFailed = (messages) => messages.at(-1)?.code === 'LODESTONE_OUT_OF_MEMORY';
+        open(1, small);
+        await worker.until(1, isWhole);
+        open(2, large);
+        await worker.until(2, hasFailed);
+        await worker.until(1, hasFailed);
+        open(3, small);
+        assert.equal((await worker.until(3, isWhole)).filter(({ type }) => type === 'error').length, 0);
+        worker.send({ type: 'close', id: 3 });
+        return 'two, then one';
+      } finally {
+        worker.close();
+        await server.close();
+      }
     },
   };
 }
@@ -309,6 +407,8 @@ function checksOfPage(site, path) {
 const log = new Log();
 const streams = buildStreams();
 await log.run('module', checksOfModule());
+const [small, large] = ['spot_triangulated.lods', 'stanford-bunny.lods'].map((name) => streams.find((path) => basename(path) === name));
+if (small && large) await log.run('memory', checksOfMemory(large, small));
 for (const path of streams) await log.run(basename(path), checksOfStream(path));
 const site = await openSite({ ...options, more: { package: options.package } });
 for (const path of streams) await log.run(`${basename(path)} in three.js`, checksOfPage(site, path));

@@ -58,7 +58,8 @@ export interface StreamOptions {
   slack?: number;
   /** Work out smooth normals for each update, for streams without NORMAL. Default false. */
   normals?: boolean;
-  /** What the mesh may take in memory. Default 1 GiB. */
+  /** What the mesh may take in memory, in bytes; one that takes more fails with LODESTONE_LIMIT_EXCEEDED. Default 192 MiB:
+   * decoding takes about six times as much, and all streams of a page share 2 GiB. */
   mostBytes?: number;
   /** Read and decode in a worker. Default true where there are workers. */
   worker?: boolean;

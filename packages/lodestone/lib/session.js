@@ -35,6 +35,7 @@ export class Session {
   #acknowledged = new Signal();
   #post;
   #closed = false;
+  #lost = false; // the runtime
   #chunks = [];
   #ended = false; // no more bytes
   #shown = false; // the base mesh, at least
@@ -65,6 +66,14 @@ export class Session {
     this.#acknowledged.wake();
   }
 
+  /** Ends it with an error that another session of the runtime has had: nothing of that can be called any more. */
+  lose({ code, message }) {
+    if (this.#closed) return;
+    this.#lost = true;
+    this.close();
+    this.#post({ type: 'error', code, message });
+  }
+
   /** Works until it is closed, or fails with a message of type "error". */
   async run() {
     try {
@@ -75,9 +84,12 @@ export class Session {
       }
     } catch (error) {
       this.#source.close();
-      if (!this.#closed) this.#post({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
-      if (error.code === 'LODESTONE_OUT_OF_MEMORY') return; // nothing can be called any more
+      const closed = this.#closed;
+      this.#closed = true;
+      this.#lost ||= error.code === 'LODESTONE_OUT_OF_MEMORY';
+      if (!closed) this.#post({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
     }
+    if (this.#lost) return; // nothing can be called any more
     this.#cursor?.destroy();
     this.#stream.destroy();
   }

@@ -12,6 +12,7 @@ export function load(source?: WebAssembly.Module | ArrayBuffer | ArrayBufferView
 /** The module at work: calls do their work at once, in the thread they are made in, and throw LodestoneErrors. */
 export class Runtime {
   readonly version: string;
+  /** `mostBytes`: what the mesh may take in memory. Default 192 MiB. */
   createStream(options?: { mostBytes?: number }): Stream;
   /** How many pixels a unit of the mesh covers; angles in radians, distance to the object's nearest point. */
   pixelsPerUnit(view: { screenHeight: number; fieldOfView: number; distance: number; scale?: number }): number;

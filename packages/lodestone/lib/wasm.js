@@ -15,6 +15,8 @@ export function checkRange(name, number, least, most) {
   if (!(number >= least && number <= most)) throw new RangeError(`${name} is ${number}`);
 }
 
+const MOST_BYTES = 192 << 20; // of a mesh: decoding takes about six times as much, and the module's memory ends at 2 GiB
+
 const COMPONENTS = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
 
 /** Compiles the module: the one beside this file, or what is given as bytes, a Response or a WebAssembly.Module. */
@@ -33,6 +35,8 @@ export async function load(source) {
 
 /** The module at work. */
 export class Runtime {
+  #failure; // what it ended with
+
   constructor(module) {
     const imports = {};
     for (const { module: from, name, kind } of WebAssembly.Module.imports(module)) {
@@ -48,11 +52,13 @@ export class Runtime {
 
   /** Calls an export. One that ends inside has run out of memory: the runtime is of no use any more. */
   call(name, ...values) {
+    if (this.#failure) throw this.#failure;
     try {
       return this.exports[name](...values);
     } catch (error) {
       if (!(error instanceof WebAssembly.RuntimeError)) throw error;
-      throw new LodestoneError('LODESTONE_OUT_OF_MEMORY', `${name}: ${error.message}`);
+      this.#failure = new LodestoneError('LODESTONE_OUT_OF_MEMORY', `${name}: ${error.message}`);
+      throw this.#failure;
     }
   }
 
@@ -79,7 +85,7 @@ export class Runtime {
       job(at);
       return new Type(this.exports.memory.buffer, at, count).slice();
     } finally {
-      this.exports.release(at);
+      this.release(at);
     }
   }
 
@@ -89,11 +95,15 @@ export class Runtime {
     return at;
   }
 
+  release(at) {
+    if (!this.#failure) this.call('release', at); // where it has ended, that is what is to be told
+  }
+
   pixelsPerUnit({ screenHeight, fieldOfView, distance, scale = 1 }) {
     return this.call('pixels_per_unit', screenHeight, fieldOfView, distance, scale);
   }
 
-  createStream({ mostBytes = 1 << 30 } = {}) {
+  createStream({ mostBytes = MOST_BYTES } = {}) {
     return new Stream(this, mostBytes);
   }
 }
@@ -128,7 +138,7 @@ export class Stream {
       new Uint8Array(runtime.exports.memory.buffer, at, bytes.length).set(bytes);
       this.run('stream_append', this.handle, offset, at, bytes.length);
     } finally {
-      runtime.exports.release(at);
+      runtime.release(at);
     }
   }
 

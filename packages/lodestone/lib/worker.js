@@ -2,34 +2,46 @@
 import { Session } from './session.js';
 import { load } from './wasm.js';
 
-let runtime;
-const sessions = new Map();
+let shared; // a promise of the runtime
+const sessions = new Map(); // with the runtime that each is of
 
 /** One runtime for all streams, and another where that has failed. */
 function sharedRuntime() {
-  runtime ??= load().catch((error) => {
-    runtime = undefined;
+  shared ??= load().catch((error) => {
+    shared = undefined;
     throw error;
   });
-  return runtime;
+  return shared;
+}
+
+/** Ends all that a runtime without memory has been used for. */
+function abandon(runtime, error) {
+  if (shared === runtime) shared = undefined;
+  for (const [id, { session, of }] of sessions) {
+    if (of !== runtime) continue;
+    sessions.delete(id);
+    session.lose(error);
+  }
 }
 
 async function open({ id, url, options }) {
+  const of = sharedRuntime();
+  const post = (message, transferred = []) => {
+    self.postMessage({ id, ...message }, transferred);
+    if (message.code === 'LODESTONE_OUT_OF_MEMORY') abandon(of, message);
+  };
   try {
-    const session = new Session(await sharedRuntime(), url, options, (message, transferred = []) => {
-      if (message.code === 'LODESTONE_OUT_OF_MEMORY') runtime = undefined;
-      self.postMessage({ id, ...message }, transferred);
-    });
-    sessions.set(id, session);
+    const session = new Session(await of, url, options, post);
+    sessions.set(id, { session, of });
     await session.run();
   } catch (error) {
-    self.postMessage({ id, type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
+    post({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
   }
   sessions.delete(id);
 }
 
 self.onmessage = ({ data }) => {
-  const session = sessions.get(data.id);
+  const session = sessions.get(data.id)?.session;
   if (data.type === 'open') open(data);
   else if (data.type === 'want') session?.want(data.deviation);
   else if (data.type === 'acknowledge') session?.acknowledge();
