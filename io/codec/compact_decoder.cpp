@@ -16,8 +16,8 @@ constexpr std::size_t kMostWedgesEach = 65536;  // of a vertex
 auto broken(const std::string& message) { return fail(ErrorCode::Malformed, message); }
 
 LevelLimits limits_of(const CompactHeader& header) {
-  return {header.grid_bits, static_cast<Index>(header.groups.size()), header.vertex_count(), header.wedge_count(),
-          header.face_count()};
+  return {header.grid_bits, static_cast<Index>(header.groups.size()), header.base_vertex_count, header.base_wedge_count,
+          header.base_face_count()};
 }
 
 }  // namespace
@@ -174,6 +174,7 @@ Result<void> CompactDecoder::read_chunk(const CompactChunkEntry& chunk, std::spa
   if (chunk_count_ == 0) LODESTONE_CHECK(read_base(coder));
   const std::size_t records = mesh_.record_count(), faces = levels_.mesh().face_count();
   const std::size_t wedges = levels_.wedges().size();
+  levels_.allow(chunk.record_count, chunk.wedge_count, chunk.face_count);
   for (std::uint32_t round = 0; round < chunk.round_count; ++round) LODESTONE_CHECK(read_round(coder));
   if (mesh_.record_count() - records != chunk.record_count)
     return broken(text("has ", mesh_.record_count() - records, " records where ", chunk.record_count, " are due"));

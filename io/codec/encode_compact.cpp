@@ -432,7 +432,8 @@ Result<CompactStream> CompactEncoder::run() {
   std::uint64_t walked = 0;
   const auto record_count = static_cast<Index>(mesh_.record_count());
   for (Index first = 0, end = 0; first < record_count; first = end) {
-    if (coder_.bits() / 8 >= static_cast<double>(std::max(kLeastChunkBytes, body_.size()))) end_chunk();
+    const bool is_long = coder_.bits() / 8 >= static_cast<double>(std::max(kLeastChunkBytes, body_.size()));
+    if (is_long && levels_.may_end_chunk()) end_chunk();
     walked += levels_.mesh().face_count();
     if (walked > most_walked)
       return fail(ErrorCode::LimitExceeded, text("compact stream: more than ", result_.round_count, " rounds of ",
@@ -441,6 +442,8 @@ Result<CompactStream> CompactEncoder::run() {
     if (end == first) return unsupported(text("record ", first, " does not fit its level"));
     LODESTONE_CHECK(write_round(first, end));
   }
+  if (!levels_.may_end_chunk())
+    return fail(ErrorCode::LimitExceeded, "compact stream: polygons of records have too many corners");
   end_chunk();
   result_.bytes = write_compact_header(header_);
   append_bytes(result_.bytes, body_);

@@ -6,7 +6,7 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr std::uint64_t kMostCornersEach = 64;  // of polygons, for each face and vertex of the full mesh
+constexpr std::uint64_t kMostCornersEach = 64;  // of polygons, for each face and vertex of the level after the chunk
 
 enum Flag : std::uint32_t { kAnyJoins, kJoins, kAnyExtra, kFlags };
 
@@ -25,8 +25,23 @@ LevelCoder::LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec>
       loose_coder_(limits.group_count),
       points_(limits.grid_bits),
       attributes_(attributes),
-      flags_(std::array<std::uint32_t, 1>{kFlags}, 1),
-      corners_left_(kMostCornersEach * (limits.most_faces + limits.most_vertices)) {}
+      flags_(std::array<std::uint32_t, 1>{kFlags}, 1) {}
+
+void LevelCoder::allow(std::uint64_t vertices, std::uint64_t wedges, std::uint64_t faces) {
+  limits_.most_vertices = positions_.size() + vertices;
+  limits_.most_wedges = wedges_.size() + wedges;
+  limits_.most_faces = mesh_.face_count() + faces;
+}
+
+bool LevelCoder::may_end_chunk() const {
+  return corners_ <= kMostCornersEach * (mesh_.face_count() + positions_.size());
+}
+
+/// How many corners polygons may still have.
+std::uint64_t LevelCoder::corners_left() const {
+  const std::uint64_t most = kMostCornersEach * (limits_.most_faces + limits_.most_vertices);
+  return most > corners_ ? most - corners_ : 0;
+}
 
 bool LevelCoder::code_flag(BitCoder& coder, std::uint32_t which, bool is) {
   return flags_.code(coder, is ? 1 : 0, std::array<std::uint32_t, 1>{which}, 0) != 0;
@@ -160,8 +175,8 @@ bool LevelCoder::end_vertex() {
   const std::size_t first = begin == 0 ? 0 : sectors_.sectors[begin - 1].polygon_end;
   const std::size_t corners = sectors_.polygons.size() - first;
   vertices_.sector_end.push_back(static_cast<Index>(sectors_.sectors.size()));
-  if (corners > corners_left_ || wedges_.size() > limits_.most_wedges) return false;
-  corners_left_ -= corners;
+  if (corners > corners_left() || wedges_.size() > limits_.most_wedges) return false;
+  corners_ += corners;
   return true;
 }
 
@@ -222,7 +237,7 @@ bool LevelCoder::code_loose_vertex(BitCoder& coder, LooseVertex& vertex) {
   wedges_.add_vertex();
   mesh_.add_vertex();
   const std::size_t first_fine = sectors_.fine.size();
-  if (!loose_coder_.code(coder, vertex.record, round_number_, corners_left_, mesh_, wedges_, sectors_)) return false;
+  if (!loose_coder_.code(coder, vertex.record, round_number_, corners_left(), mesh_, wedges_, sectors_)) return false;
   if (mesh_.face_count() > limits_.most_faces || wedges_.size() > limits_.most_wedges) return false;
   if (!code_extra(coder, vertex.extra) || !end_vertex()) return false;
   star_.assign(sectors_.fine.begin() + static_cast<std::ptrdiff_t>(first_fine), sectors_.fine.end());

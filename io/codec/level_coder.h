@@ -19,7 +19,8 @@
 
 namespace lodestone::detail {
 
-/// What all levels have in common, and what the finest of them may have.
+/// What all levels have in common, and what the next ones may have. What a stream says of chunks that are yet to come
+/// counts for nothing: a reader sets these for each chunk.
 struct LevelLimits {
   int grid_bits = 14;
   Index group_count = 1;
@@ -89,6 +90,11 @@ class LevelCoder {
  public:
   LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec> attributes);
 
+  /// Lets levels from now on have so many more vertices, wedges and faces than this one has, and no more.
+  void allow(std::uint64_t vertices, std::uint64_t wedges, std::uint64_t faces);
+  /// Whether the polygons so far have no more corners than a reader allows at the end of a chunk that ends here.
+  bool may_end_chunk() const;
+
   const PatchMesh& mesh() const { return mesh_; }
   const WedgeTable& wedges() const { return wedges_; }
   std::span<const Vec3i> positions() const { return positions_; }
@@ -126,6 +132,7 @@ class LevelCoder {
   bool end_vertex();
   bool code_extra(BitCoder& coder, Index count);
   bool code_flag(BitCoder& coder, std::uint32_t which, bool is);
+  std::uint64_t corners_left() const;
   Vec3i guess_loose() const;
 
   LevelLimits limits_;
@@ -140,8 +147,8 @@ class LevelCoder {
   AttributeCoder attributes_;
   BitMixer flags_;
   std::uint32_t round_number_ = 0;
-  bool has_seams_ = false;      // in the level before the round
-  std::uint64_t corners_left_;  // that polygons of sectors may still have
+  bool has_seams_ = false;     // in the level before the round
+  std::uint64_t corners_ = 0;  // of the polygons of all sectors
 
   RoundPatches patches_;
   NewStars stars_;

@@ -13,6 +13,8 @@
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/simplify.h>
 
+#include "codec/compact_decoder.h"
+#include "codec/compact_layout.h"
 #include "support/data.h"
 #include "support/mesh_properties.h"
 #include "support/random.h"
@@ -426,6 +428,48 @@ TEST_CASE("a flipped bit anywhere in a compact stream is a named error, and so a
   CHECK(decode_compact(bytes));
   bytes.push_back({});
   CHECK(!decode_compact(bytes));
+}
+
+/// A stream with another header, and after it what followed the old one; `size` bytes of that.
+std::vector<std::byte> with_header(const std::vector<std::byte>& stream, const detail::CompactHeader& header,
+                                   std::uint64_t size = ~std::uint64_t{0}) {
+  const auto old = detail::read_compact_header(stream);
+  REQUIRE(old);
+  std::vector<std::byte> bytes = detail::write_compact_header(header);
+  const auto body = std::span(stream).subspan(old->header_bytes);
+  const auto kept = body.first(static_cast<std::size_t>(std::min<std::uint64_t>(size, body.size())));
+  bytes.insert(bytes.end(), kept.begin(), kept.end());
+  return bytes;
+}
+
+detail::CompactHeader header_of(const std::vector<std::byte>& stream) {
+  auto header = detail::read_compact_header(stream);
+  REQUIRE(header);
+  return std::move(*header);
+}
+
+TEST_CASE("a chunk may add what it says of itself, whatever chunks say that never come") {
+  const std::vector<std::byte> bytes = encoded(progressive(terrain(40, 3))).bytes;
+  detail::CompactHeader header = header_of(bytes);
+  REQUIRE(header.chunks.size() >= 3);
+  detail::CompactChunkEntry& first = header.chunks.front();
+  REQUIRE(first.round_count > 1);
+  const auto refused = [&](const char* message) {
+    const auto mesh = decode_compact(with_header(bytes, header, first.byte_length));
+    REQUIRE(!mesh);
+    INFO(mesh.error().message);
+    CHECK(mesh.error().message == message);
+  };
+  // Its first rounds end it, not the comparison after the last.
+  const detail::CompactChunkEntry known = first;
+  first.face_count = 2;
+  refused("compact stream: chunk 0: a round has wedges that do not fit");
+  first = known;
+  first.wedge_count = 1;
+  refused("compact stream: chunk 0: a round has wedges that do not fit");
+  first = known;
+  first.record_count = first.round_count;
+  refused("compact stream: chunk 0: a round has wedges that do not fit");
 }
 
 TEST_CASE("meshes on one grid meet where they met") {
