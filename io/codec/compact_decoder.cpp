@@ -25,7 +25,6 @@ LevelLimits limits_of(const CompactHeader& header) {
 CompactDecoder::CompactDecoder(CompactHeader header, ProgressiveMesh& mesh, std::uint64_t most_bytes)
     : header_(std::move(header)),
       levels_(limits_of(header_), header_.attributes),
-      faces_left_(kMostFacesWalked * (header_.face_count() + 1)),
       mesh_(mesh),
       most_bytes_(most_bytes) {}
 
@@ -147,9 +146,8 @@ bool CompactDecoder::add_record(std::size_t i) {
 }
 
 Result<void> CompactDecoder::read_round(BitCoder& coder) {
-  const std::uint64_t face_count = levels_.mesh().face_count();
-  if (face_count > faces_left_) return fail(ErrorCode::LimitExceeded, "too many rounds for so few faces");
-  faces_left_ -= face_count;
+  walked_ += levels_.size();
+  if (walked_ > most_walked_) return fail(ErrorCode::LimitExceeded, "too many rounds for so small a mesh");
   if (!levels_.code_patches(coder, nullptr)) return broken("a round has no patches");
   if (!levels_.code_places(coder, {})) return broken("a round's patches do not belong together");
   if (!levels_.code_wedges(coder, nullptr)) return broken("a round has wedges that do not fit");
@@ -175,6 +173,8 @@ Result<void> CompactDecoder::read_chunk(const CompactChunkEntry& chunk, std::spa
   const std::size_t records = mesh_.record_count(), faces = levels_.mesh().face_count();
   const std::size_t wedges = levels_.wedges().size();
   levels_.allow(chunk.record_count, chunk.wedge_count, chunk.face_count);
+  most_walked_ =
+      kMostWalked * (levels_.size() + std::uint64_t{chunk.record_count} + chunk.wedge_count + chunk.face_count);
   for (std::uint32_t round = 0; round < chunk.round_count; ++round) LODESTONE_CHECK(read_round(coder));
   if (mesh_.record_count() - records != chunk.record_count)
     return broken(text("has ", mesh_.record_count() - records, " records where ", chunk.record_count, " are due"));

@@ -47,7 +47,8 @@ class CompactDecoder {
   std::size_t chunk_count_ = 0;
   LevelCoder levels_;
   ErrorCoder errors_;
-  std::uint64_t faces_left_;  // that walks may still visit
+  std::uint64_t walked_ = 0;  // by rounds, see LevelCoder::size
+  std::uint64_t most_walked_ = 0;
   int deviation_code_ = 0;
   std::vector<Index> slots_;        // by face of the level: in its group
   std::vector<Index> group_faces_;  // by group: of the level

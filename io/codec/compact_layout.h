@@ -26,7 +26,7 @@ inline constexpr std::uint64_t kMostRecordsPerByte = 8;    ///< of a chunk; the 
 inline constexpr std::uint64_t kMostBasePerByte = 8;       ///< vertices, wedges and faces of the base mesh; the same
 inline constexpr std::uint64_t kMostWedgesPerByte = 8;     ///< that a chunk adds; the same
 inline constexpr std::uint64_t kMostNumbersPerByte = 256;  ///< of attributes that a chunk adds; the same
-inline constexpr std::uint64_t kMostFacesWalked = 256;     ///< over all rounds, for each face of the full mesh
+inline constexpr std::uint64_t kMostWalked = 256;          ///< by rounds up to the end of a chunk, see LevelCoder::size
 
 /// Returns the low half of XXH64.
 std::uint32_t checksum32(std::span<const std::byte> bytes);

@@ -428,13 +428,14 @@ void CompactEncoder::end_chunk() {
 
 Result<CompactStream> CompactEncoder::run() {
   LODESTONE_CHECK(write_base());
-  const std::uint64_t most_walked = kMostFacesWalked * (full_face_count(mesh_) + 1);
+  const std::uint64_t most_walked = kMostWalked * (full_face_count(mesh_) + mesh_.positions.size() +
+                                                   mesh_.wedge_vertex.size() + mesh_.groups.size() + 1);
   std::uint64_t walked = 0;
   const auto record_count = static_cast<Index>(mesh_.record_count());
   for (Index first = 0, end = 0; first < record_count; first = end) {
     const bool is_long = coder_.bits() / 8 >= static_cast<double>(std::max(kLeastChunkBytes, body_.size()));
-    if (is_long && levels_.may_end_chunk()) end_chunk();
-    walked += levels_.mesh().face_count();
+    if (is_long && levels_.may_end_chunk() && walked <= kMostWalked * levels_.size()) end_chunk();
+    walked += levels_.size();
     if (walked > most_walked)
       return fail(ErrorCode::LimitExceeded, text("compact stream: more than ", result_.round_count, " rounds of ",
                                                  record_count, " records are too many"));

@@ -90,6 +90,10 @@ class LevelCoder {
  public:
   LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec> attributes);
 
+  /// What the next round is taken to cost: how many faces, vertices, wedges and groups the level has, and one more.
+  std::uint64_t size() const {
+    return mesh_.face_count() + positions_.size() + wedges_.size() + limits_.group_count + 1;
+  }
   /// Lets levels from now on have so many more vertices, wedges and faces than this one has, and no more.
   void allow(std::uint64_t vertices, std::uint64_t wedges, std::uint64_t faces);
   /// Whether the polygons so far have no more corners than a reader allows at the end of a chunk that ends here.

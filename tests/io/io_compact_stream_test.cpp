@@ -472,6 +472,56 @@ TEST_CASE("a chunk may add what it says of itself, whatever chunks say that neve
   refused("compact stream: chunk 0: a round has wedges that do not fit");
 }
 
+/// A stream of one chunk: a vertex, and rounds of one vertex each without faces, of so many wedges.
+std::vector<std::byte> cloud_of(Index rounds, Index wedges_each) {
+  using namespace detail;
+  LevelCoder levels({}, {});
+  ErrorCoder errors;
+  BitCoder coder;
+  int deviation = 0, curvature = 0;
+  BaseMesh base;
+  base.positions.resize(1);
+  base.wedge_counts.push_back(1);
+  REQUIRE(levels.code_base(coder, base));
+  REQUIRE(errors.code(coder, deviation, curvature));
+  const PatchPlan no_patches;
+  const WedgePlan no_wedges;
+  for (Index round = 0; round < rounds; ++round) {
+    REQUIRE(levels.code_patches(coder, &no_patches));
+    REQUIRE(levels.code_places(coder, {}));
+    REQUIRE(levels.code_wedges(coder, &no_wedges));
+    REQUIRE(levels.code_points(coder, {}));
+    Index count = 1;
+    REQUIRE(levels.code_loose_count(coder, count));
+    LooseVertex vertex;
+    vertex.extra = wedges_each;
+    if (!levels.code_loose_vertex(coder, vertex)) return {};
+    REQUIRE(errors.code(coder, deviation, curvature));
+  }
+  CompactHeader header;
+  header.grid_bits = 14;
+  header.groups.push_back({});
+  header.base_vertex_count = header.base_wedge_count = 1;
+  CompactChunkEntry chunk;
+  chunk.round_count = chunk.record_count = rounds;
+  chunk.wedge_count = rounds * wedges_each;
+  std::vector<std::byte> body = coder.finish();
+  body.resize(std::max<std::size_t>(body.size(), static_cast<std::size_t>(header.least_bytes(chunk, true))));
+  chunk.byte_length = body.size();
+  chunk.checksum = checksum32(body);
+  header.chunks.push_back(chunk);
+  std::vector<std::byte> bytes = write_compact_header(header);
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  return bytes;
+}
+
+TEST_CASE("rounds cost what the level has, vertices without faces too") {
+  CHECK(decoded(cloud_of(200, 1)).record_count() == 200);
+  const auto slow = decode_compact(cloud_of(2000, 1));
+  REQUIRE(!slow);
+  CHECK(slow.error().code == ErrorCode::LimitExceeded);
+}
+
 TEST_CASE("meshes on one grid meet where they met") {
   CompactOptions options;
   options.grid_bits = 10;
