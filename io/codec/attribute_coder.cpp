@@ -1,6 +1,7 @@
 #include "codec/attribute_coder.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <string_view>
 
@@ -176,19 +177,44 @@ bool AttributeCoder::code_base(BitCoder& coder, const PatchMesh& mesh, const Wed
   return true;
 }
 
+/// Sorts the faces of a vertex by its wedges; those that another record has taken since are left out.
+void AttributeCoder::sort_faces(const PatchMesh& mesh, Index first_wedge, Index end_wedge,
+                                std::span<const Index> faces) {
+  const auto is_own = [&](Index face) {
+    return mesh.wedge(3 * face) >= first_wedge && mesh.wedge(3 * face) < end_wedge;
+  };
+  sorted_end_.assign(end_wedge - first_wedge + std::size_t{1}, 0);
+  for (const Index face : faces)
+    if (is_own(face)) ++sorted_end_[mesh.wedge(3 * face) - first_wedge + 1];
+  std::partial_sum(sorted_end_.begin(), sorted_end_.end(), sorted_end_.begin());
+  sorted_.resize(sorted_end_.back());
+  // Where each wedge's begin moves to where they end.
+  for (const Index face : faces)
+    if (is_own(face)) sorted_[sorted_end_[mesh.wedge(3 * face) - first_wedge]++] = face;
+}
+
+/// Finds the ring of a wedge with these faces.
+void AttributeCoder::look_around(const PatchMesh& mesh, Index wedge, std::span<const Index> faces) {
+  faces_.assign(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(std::min(faces.size(), kMostAround)));
+  ring_.clear();
+  for (const Index face : faces_)
+    for (const Index other : {mesh.wedge(3 * face + 1), mesh.wedge(3 * face + 2)}) {
+      if (seen_by_[other] == wedge || ring_.size() == kMostAround) continue;
+      seen_by_[other] = wedge;
+      ring_.push_back(other);
+    }
+}
+
 bool AttributeCoder::code_vertex(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges,
                                  std::span<const Vec3i> positions, Index vertex, std::span<const Index> faces,
                                  std::span<const std::vector<std::int32_t>> given, Index first_given) {
   if (coders_.empty()) return true;
-  for (Index w = wedges.begin(vertex); w < wedges.end(vertex); ++w) {
-    faces_.clear();
-    ring_.clear();
-    for (const Index face : faces) {
-      if (mesh.wedge(3 * face) != w) continue;
-      faces_.push_back(face);
-      for (const Index other : {mesh.wedge(3 * face + 1), mesh.wedge(3 * face + 2)})
-        if (std::find(ring_.begin(), ring_.end(), other) == ring_.end()) ring_.push_back(other);
-    }
+  const Index first = wedges.begin(vertex), end = wedges.end(vertex);
+  seen_by_.resize(wedges.size(), kNoIndex);
+  sort_faces(mesh, first, end, faces);
+  for (Index w = first; w < end; ++w) {
+    const Index begin = w == first ? 0 : sorted_end_[w - first - 1];
+    look_around(mesh, w, std::span(sorted_).subspan(begin, sorted_end_[w - first] - begin));
     const Index near = w > 0 ? w - 1 : kNoIndex;
     if (!code_wedge(coder, {mesh, wedges, positions, normals_, w, faces_, ring_, texture_, normal_, near}, given,
                     first_given))

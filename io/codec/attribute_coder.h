@@ -18,6 +18,9 @@ namespace lodestone::detail {
 
 class ElementCoder;
 
+/// How many faces and wedges around one may tell of it, the first ones: a star of a patch has no more.
+inline constexpr std::size_t kMostAround = 256;
+
 /// What is there before an element of a wedge is coded.
 struct ElementPlace {
   const PatchMesh& mesh;
@@ -26,7 +29,7 @@ struct ElementPlace {
   std::span<const Vec3i> normals;  ///< by wedge: unit; of the faces that have it, by area
   Index wedge = 0;
   std::span<const Index> faces;           ///< those that have the wedge as their first; in order, if it has a ring
-  std::span<const Index> ring;            ///< wedges around it, each once
+  std::span<const Index> ring;            ///< wedges around it, each once; of both, kMostAround at most
   const ElementCoder* texture = nullptr;  ///< the first texture coordinates, if any; they are coded before directions
   const ElementCoder* normal = nullptr;   ///< the first normals, if any; they are coded before directions with a sign
   Index beside = kNoIndex;  ///< without a ring: a wedge that is likely to have about the same; kNoIndex for none
@@ -100,6 +103,8 @@ class AttributeCoder {
   bool code_wedge(BitCoder& coder, const ElementPlace& place, std::span<const std::vector<std::int32_t>> given,
                   Index first_given);
 
+  void sort_faces(const PatchMesh& mesh, Index first_wedge, Index end_wedge, std::span<const Index> faces);
+  void look_around(const PatchMesh& mesh, Index wedge, std::span<const Index> faces);
   void add_coder(const AttributeSpec& spec);
   void find_joints();
 
@@ -111,6 +116,9 @@ class AttributeCoder {
   bool has_directions_ = false;
   std::vector<Vec3i> normals_;
   std::vector<Index> faces_, ring_;
+  std::vector<Index> seen_by_;     // by wedge: the last one whose ring it is in
+  std::vector<Index> sorted_;      // faces of a vertex, by their wedge
+  std::vector<Index> sorted_end_;  // by wedge of the vertex: in `sorted_`
 };
 
 }  // namespace lodestone::detail

@@ -11,8 +11,6 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr std::size_t kMostWedgesEach = 65536;  // of a vertex
-
 auto broken(const std::string& message) { return fail(ErrorCode::Malformed, message); }
 
 LevelLimits limits_of(const CompactHeader& header) {
@@ -116,13 +114,12 @@ void CompactDecoder::add_sector(std::size_t s) {
   mesh_.polygon_begin.push_back(mesh_.polygons.size());
 }
 
-/// Adds the record of the round's i-th vertex. False where it has too many wedges.
-bool CompactDecoder::add_record(std::size_t i) {
+/// Adds the record of the round's i-th vertex.
+void CompactDecoder::add_record(std::size_t i) {
   const SectorList& sectors = levels_.sectors();
   const std::vector<Index>& ends = levels_.vertices().sector_end;
   const Index begin = i == 0 ? 0 : ends[i - 1];
   const auto vertex = static_cast<Index>(mesh_.positions.size());
-  if (levels_.wedges().count(vertex) > kMostWedgesEach) return false;
   freed_.clear();
   for (Index s = begin; s < ends[i]; ++s) add_sector(s);
   mesh_.slots.insert(mesh_.slots.end(), freed_.begin(), freed_.end());
@@ -142,7 +139,6 @@ bool CompactDecoder::add_record(std::size_t i) {
   mesh_.deviation.push_back(mesh_.deviation.back());
   mesh_.curvature_error.push_back(mesh_.curvature_error.back());
   add_position(levels_.positions()[vertex]);
-  return true;
 }
 
 Result<void> CompactDecoder::read_round(BitCoder& coder) {
@@ -158,8 +154,7 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
   for (; loose > 0; --loose)
     if (LooseVertex read; !levels_.code_loose_vertex(coder, read)) return broken("a loose record does not fit");
   if (!levels_.code_attributes(coder, {})) return broken("an attribute is out of its range");
-  for (std::size_t i = 0; i < levels_.vertices().count(); ++i)
-    if (!add_record(i)) return broken("a vertex has too many wedges");
+  for (std::size_t i = 0; i < levels_.vertices().count(); ++i) add_record(i);
   add_attributes();
   mesh_.round_begin.push_back(static_cast<Index>(mesh_.record_count()));
   LODESTONE_CHECK(check_held_bytes(mesh_, most_bytes_));

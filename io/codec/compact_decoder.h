@@ -40,7 +40,7 @@ class CompactDecoder {
   void add_position(const Vec3i& position);
   void add_attributes();
   void begin_mesh(const BaseMesh& base);
-  bool add_record(std::size_t i);
+  void add_record(std::size_t i);
   void add_sector(std::size_t s);
 
   CompactHeader header_;

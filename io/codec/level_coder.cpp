@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "codec/compact_layout.h"
+
 namespace lodestone::detail {
 namespace {
 
@@ -175,6 +177,7 @@ bool LevelCoder::end_vertex() {
   const std::size_t first = begin == 0 ? 0 : sectors_.sectors[begin - 1].polygon_end;
   const std::size_t corners = sectors_.polygons.size() - first;
   vertices_.sector_end.push_back(static_cast<Index>(sectors_.sectors.size()));
+  if (wedges_.count(static_cast<Index>(wedges_.vertex_count() - 1)) > kMostWedgesEach) return false;
   if (corners > corners_left() || wedges_.size() > limits_.most_wedges) return false;
   corners_ += corners;
   return true;

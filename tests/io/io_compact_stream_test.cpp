@@ -13,6 +13,7 @@
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/simplify.h>
 
+#include "codec/attribute_coder.h"
 #include "codec/compact_decoder.h"
 #include "codec/compact_layout.h"
 #include "support/data.h"
@@ -520,6 +521,47 @@ TEST_CASE("rounds cost what the level has, vertices without faces too") {
   const auto slow = decode_compact(cloud_of(2000, 1));
   REQUIRE(!slow);
   CHECK(slow.error().code == ErrorCode::LimitExceeded);
+}
+
+TEST_CASE("a record has no more wedges than its sectors can name") {
+  CHECK(decoded(cloud_of(1, 65536)).wedge_vertex.size() == 65537);
+  CHECK(cloud_of(1, 65537).empty());
+}
+
+TEST_CASE("of a wide star, the first faces tell of its wedges") {
+  using namespace detail;
+  constexpr Index kFaces = 600;
+  std::vector<Index> corners, groups(kFaces, 0), faces;
+  PatchMesh mesh;
+  WedgeTable wedges;
+  for (Index i = 0; i <= kFaces; ++i) {
+    wedges.add_vertex();
+    wedges.add_wedge();
+  }
+  for (Index i = 0; i < kFaces; ++i) {
+    faces.push_back(i);
+    corners.insert(corners.end(), {kFaces, i, (i + 1) % kFaces});
+  }
+  mesh.start(corners, corners, groups, kFaces + 1);
+  const std::vector<Vec3i> positions(kFaces + 1);
+  // Far from the first face all have the same value, the new vertex too; the next ones have others.
+  const auto bits_of = [&](Index first_same) {
+    AttributeSpec spec;
+    spec.type = ComponentType::UInt16;
+    spec.component_count = 1;
+    AttributeCoder attributes(std::array{spec});
+    std::vector<std::int32_t> numbers;
+    for (Index i = 0; i <= kFaces; ++i)
+      numbers.push_back(i < first_same ? static_cast<std::int32_t>(40503 * i % 65536) : 12345);
+    BitCoder coder;
+    REQUIRE(attributes.code_base(coder, mesh, wedges, positions, std::array{numbers}));
+    const double before = coder.bits();
+    attributes.look(mesh, wedges, positions);
+    REQUIRE(attributes.code_vertex(coder, mesh, wedges, positions, kFaces, faces, std::array{numbers}, 0));
+    return coder.bits() - before;
+  };
+  CHECK(bits_of(250) < 4);
+  CHECK(bits_of(300) > 8);
 }
 
 TEST_CASE("meshes on one grid meet where they met") {
