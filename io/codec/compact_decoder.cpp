@@ -79,7 +79,18 @@ void CompactDecoder::begin_mesh(const BaseMesh& base) {
   mesh_.round_begin.push_back(0);
 }
 
+/// Checks what the arrays of the base mesh take before there are any.
+Result<void> CompactDecoder::check_base_bytes() const {
+  std::uint64_t bytes_each = sizeof(Index);
+  for (const AttributeSpec& spec : header_.attributes)
+    bytes_each += std::uint64_t{component_bytes(spec.type)} * spec.component_count;
+  return check_held_bytes(header_.base_vertex_count * std::uint64_t{sizeof(Vec3f)} +
+                              header_.base_wedge_count * bytes_each + 3 * sizeof(Index) * header_.base_face_count(),
+                          most_bytes_);
+}
+
 Result<void> CompactDecoder::read_base(BitCoder& coder) {
+  LODESTONE_CHECK(check_base_bytes());
   BaseMesh base;
   const auto face_count = static_cast<std::size_t>(header_.base_face_count());
   base.corners.resize(3 * face_count);
@@ -97,7 +108,7 @@ Result<void> CompactDecoder::read_base(BitCoder& coder) {
   mesh_.curvature_error.push_back(0);
   LODESTONE_CHECK(read_errors(coder));
   begin_mesh(base);
-  return {};
+  return check_held_bytes(mesh_, most_bytes_);
 }
 
 /// Adds a sector but for its slots.

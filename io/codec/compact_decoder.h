@@ -34,6 +34,7 @@ class CompactDecoder {
 
  private:
   Result<void> read_chunk(const CompactChunkEntry& chunk, std::span<const std::byte> bytes);
+  Result<void> check_base_bytes() const;
   Result<void> read_base(BitCoder& coder);
   Result<void> read_round(BitCoder& coder);
   Result<void> read_errors(BitCoder& coder);

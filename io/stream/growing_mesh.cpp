@@ -56,7 +56,10 @@ std::uint64_t held_bytes(const ProgressiveMesh& mesh) {
 }
 
 Result<void> check_held_bytes(const ProgressiveMesh& mesh, std::uint64_t most) {
-  const std::uint64_t held = most == kNoLimit ? 0 : held_bytes(mesh);
+  return check_held_bytes(most == kNoLimit ? 0 : held_bytes(mesh), most);
+}
+
+Result<void> check_held_bytes(std::uint64_t held, std::uint64_t most) {
   if (held <= most) return {};
   return fail(ErrorCode::LimitExceeded, text("mesh takes ", held, " bytes, where it may take ", most));
 }

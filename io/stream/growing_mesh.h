@@ -35,6 +35,7 @@ inline constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
 /// Checks that they are no more than `most`. Errors: LimitExceeded.
 Result<void> check_held_bytes(const ProgressiveMesh& mesh, std::uint64_t most);
+Result<void> check_held_bytes(std::uint64_t held, std::uint64_t most);
 
 /// Gives back that room.
 void trim(ProgressiveMesh& mesh);

@@ -564,6 +564,29 @@ TEST_CASE("of a wide star, the first faces tell of its wedges") {
   CHECK(bits_of(300) > 8);
 }
 
+TEST_CASE("a base mesh may take no more bytes than a mesh may") {
+  TriangleSoup soup = single_triangle();
+  const std::vector<std::byte> bytes = encoded(progressive(soup)).bytes;
+  const detail::CompactHeader header = header_of(bytes);
+  REQUIRE(header.chunks.size() == 1);
+  REQUIRE(header.chunks.front().round_count == 0);
+  const auto add_to = [&](ProgressiveMesh& mesh, std::uint64_t most) {
+    detail::CompactDecoder decoder(header, mesh, most);
+    return decoder.add_chunk(std::span(bytes).subspan(header.header_bytes));
+  };
+  ProgressiveMesh small, large;
+  const auto refused = add_to(small, 90);  // 3 · (12 + 4 + 4) without the arrays of records
+  REQUIRE(!refused);
+  CHECK(refused.error().code == ErrorCode::LimitExceeded);
+  CHECK(small.positions.empty());
+  CHECK(add_to(large, 10000));
+  // Before its arrays are made, where these alone take more: what it says of itself is told.
+  ProgressiveMesh none;
+  const auto early = add_to(none, 59);
+  REQUIRE(!early);
+  CHECK(early.error().message == "mesh takes 60 bytes, where it may take 59");
+}
+
 TEST_CASE("meshes on one grid meet where they met") {
   CompactOptions options;
   options.grid_bits = 10;
