@@ -93,7 +93,8 @@ AttributeSpec choose_spec(const Attribute& attribute, const CompactOptions& opti
   spec.component_count = attribute.component_count;
   spec.normalized = attribute.normalized;
   const std::string_view name = attribute.name;
-  const bool is_texture = name.starts_with("TEXCOORD_") && attribute.component_count == 2;
+  const bool is_texture = name.starts_with("TEXCOORD_") && attribute.component_count == 2 &&
+                          attribute.type != ComponentType::UInt32;  // glTF has none of these either
   if (is_texture) spec.coding = AttributeCoding::Texture;
   if (attribute.type != ComponentType::Float32) return spec;
   const std::vector<float> values = attribute_values(attribute);

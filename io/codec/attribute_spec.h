@@ -14,7 +14,7 @@ namespace lodestone::detail {
 enum class AttributeCoding : std::uint8_t {
   Numbers,     ///< component by component
   Directions,  ///< unit vectors, as points of an octahedron; a fourth component is 1 or −1
-  Texture,     ///< two components that are close to a linear map of the surface
+  Texture,     ///< two components that are close to a linear map of the surface; of 24 bits at most
   Weights,     ///< floats of joints; those of a wedge add up to 1, over all attributes that are coded so
   kCount
 };

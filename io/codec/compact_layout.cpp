@@ -103,8 +103,9 @@ Result<void> read_groups(HeaderReader& in, CompactHeader& header) {
   const std::uint64_t count = in.varint();
   if (count == 0 || count > kMaxGroups) return broken(text("mesh of ", count, " groups"), in.at());
   for (std::uint64_t i = 0; i < count && !in.overrun(); ++i) {
-    const auto material = static_cast<Index>(in.varint());
-    header.groups.push_back({material, in.count()});
+    const std::uint64_t material = in.varint();
+    if (material > kNoIndex) return broken(text("group ", i, " has material ", material), in.at());
+    header.groups.push_back({static_cast<Index>(material), in.count()});
   }
   return {};
 }
@@ -131,9 +132,9 @@ Result<AttributeSpec> read_attribute(HeaderReader& in) {
     return wrong(text("has ", int{spec.bits}, " bits"));
   const int components = spec.component_count;
   if ((spec.coding == AttributeCoding::Directions && (!is_float || components < 3 || components > 4)) ||
-      (spec.coding == AttributeCoding::Texture && components != 2) ||
+      (spec.coding == AttributeCoding::Texture && (components != 2 || spec.type == ComponentType::UInt32)) ||
       (spec.coding == AttributeCoding::Weights && !is_float))
-    return wrong(text("has ", components, " components for coding ", int{coding}));
+    return wrong(text("has ", components, " components of type ", type, " for coding ", int{coding}));
   if (!is_float || spec.coding == AttributeCoding::Directions) return spec;
   for (int c = 0; c < components; ++c) spec.low.push_back(in.get<float>());
   spec.range = in.get<float>();

@@ -587,6 +587,41 @@ TEST_CASE("a base mesh may take no more bytes than a mesh may") {
   CHECK(early.error().message == "mesh takes 60 bytes, where it may take 59");
 }
 
+TEST_CASE("texture coordinates of 32 bits are coded as numbers, and not read as texture coordinates") {
+  TriangleSoup soup = terrain(9, 3);
+  Random random(5);
+  Attribute attribute{"TEXCOORD_0", ComponentType::UInt32, 2, false, {}};
+  for (std::size_t i = 0; i < 2 * soup.positions.size(); ++i) {
+    const std::uint32_t value = random.below(2) != 0 ? 0xFFFFFFFFU : 0U;
+    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+    attribute.data.insert(attribute.data.end(), bytes, bytes + sizeof value);
+  }
+  soup.attributes.push_back(attribute);
+  const ProgressiveMesh mesh = progressive(soup);
+  const CompactStream stream = encoded(mesh);
+  check_attributes(mesh, stream, decoded(stream.bytes), {});
+  detail::CompactHeader header = header_of(stream.bytes);
+  CHECK(header.attributes[0].coding == detail::AttributeCoding::Numbers);
+  header.attributes[0].coding = detail::AttributeCoding::Texture;
+  CHECK(!read_compact_chunks(with_header(stream.bytes, header)));
+}
+
+TEST_CASE("a material is a number of 32 bits") {
+  detail::CompactHeader header = header_of(encoded(progressive(single_triangle())).bytes);
+  header.groups[0].material = kNoIndex;
+  std::vector<std::byte> bytes = detail::write_compact_header(header);
+  CHECK(read_compact_chunks(bytes));
+  constexpr std::size_t kLastOfMaterial = 16 + 17 + 1 + 4;  // behind the fixed part, the grid and the count
+  REQUIRE(bytes[kLastOfMaterial] == std::byte{0x0F});
+  bytes[kLastOfMaterial] = std::byte{0x1F};
+  const std::size_t covered = bytes.size() - sizeof(std::uint32_t);
+  const std::uint32_t checksum = detail::checksum32(std::span(bytes).first(covered));
+  std::memcpy(bytes.data() + covered, &checksum, sizeof checksum);
+  const auto chunks = read_compact_chunks(bytes);
+  REQUIRE(!chunks);
+  CHECK(chunks.error().message.find("material") != std::string::npos);
+}
+
 TEST_CASE("meshes on one grid meet where they met") {
   CompactOptions options;
   options.grid_bits = 10;
