@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t kFixedBytes = 16;  // magic, version, header_bytes
 constexpr std::size_t kChecksumBytes = 4;
-constexpr std::uint64_t kMostFaces = std::uint64_t{1} << 30U;
 
 constexpr std::uint64_t zigzag(std::int64_t x) {
   return x < 0 ? 2 * static_cast<std::uint64_t>(-(x + 1)) + 1 : 2 * static_cast<std::uint64_t>(x);
@@ -48,7 +47,7 @@ class HeaderReader {
   }
   std::uint32_t count() {
     const std::uint64_t value = varint();
-    if (value >= kMostFaces) return overrun_ = true, 0;
+    if (value >= kEndOfCounts) return overrun_ = true, 0;
     return static_cast<std::uint32_t>(value);
   }
   /// A count that lies so far from another, in a direction.
@@ -56,7 +55,7 @@ class HeaderReader {
     const std::uint64_t code = varint();
     const auto half = static_cast<std::int64_t>(code >> 1U);
     const std::int64_t value = other + direction * ((code & 1U) != 0 ? -half - 1 : half);
-    if (value < 0 || value >= static_cast<std::int64_t>(kMostFaces)) return overrun_ = true, 0;
+    if (value < 0 || value >= static_cast<std::int64_t>(kEndOfCounts)) return overrun_ = true, 0;
     return static_cast<std::uint32_t>(value);
   }
   bool overrun() const { return overrun_; }
@@ -94,8 +93,8 @@ Result<void> check_header(const CompactHeader& header) {
   if (!is_error(header.deviation.largest()) || !is_error(header.curvature.largest()))
     return wrong("errors are negative or not finite");
   if (header.chunks.empty()) return wrong("no chunks");
-  if (std::max({header.face_count(), header.wedge_count(), header.vertex_count()}) >= kMostFaces)
-    return fail(ErrorCode::LimitExceeded, text("more than ", kMostFaces, " faces, wedges or vertices"), kFixedBytes);
+  if (std::max({header.face_count(), header.wedge_count(), header.vertex_count()}) >= kEndOfCounts)
+    return fail(ErrorCode::LimitExceeded, text(kEndOfCounts, " or more faces, wedges or vertices"), kFixedBytes);
   return {};
 }
 
@@ -120,7 +119,7 @@ Result<AttributeSpec> read_attribute(HeaderReader& in) {
   spec.type = static_cast<ComponentType>(type);
   if (type < 5120 || type > 5126 || type == 5124) return wrong(text("has components of type ", type));
   spec.component_count = in.get<std::uint8_t>();
-  if (spec.component_count == 0 || spec.component_count > 16)
+  if (spec.component_count == 0 || spec.component_count > kMostComponents)
     return wrong(text("has ", int{spec.component_count}, " components"));
   spec.normalized = in.get<std::uint8_t>() != 0;
   const auto coding = in.get<std::uint8_t>();

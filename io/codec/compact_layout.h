@@ -28,6 +28,8 @@ inline constexpr std::uint64_t kMostWedgesPerByte = 8;     ///< that a chunk add
 inline constexpr std::uint64_t kMostNumbersPerByte = 256;  ///< of attributes that a chunk adds; the same
 inline constexpr std::uint64_t kMostWalked = 256;          ///< by rounds up to the end of a chunk, see LevelCoder::size
 
+inline constexpr std::uint64_t kEndOfCounts = std::uint64_t{1} << 30U;  ///< faces, wedges and vertices are fewer
+inline constexpr int kMostComponents = 16;                              ///< of an attribute
 inline constexpr Index kMostWedgesEach = 65536;  ///< of a record's vertex: sectors name them in 16 bits
 
 /// Returns the low half of XXH64.

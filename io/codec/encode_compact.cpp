@@ -25,21 +25,15 @@ constexpr std::size_t kLeastChunkBytes = 1024;
 
 auto unsupported(const std::string& message) { return fail(ErrorCode::Unsupported, "compact stream: " + message); }
 
-Result<void> check(const ProgressiveMesh& mesh, const CompactOptions& options) {
-  const auto wrong = [](const std::string& message) {
-    return fail(ErrorCode::InvalidArgument, "compact stream: " + message);
-  };
+auto wrong(const std::string& message) { return fail(ErrorCode::InvalidArgument, "compact stream: " + message); }
+auto beyond(const std::string& message) { return fail(ErrorCode::LimitExceeded, "compact stream: " + message); }
+
+Result<void> check_options(const CompactOptions& options) {
   if (options.grid_bits < kLeastGridBits || options.grid_bits > kMostGridBits)
     return wrong(text("grid of ", options.grid_bits, " bits is not of ", kLeastGridBits, " to ", kMostGridBits));
-  if (options.grid && !(options.grid->range > 0 && std::isfinite(options.grid->range)))
-    return wrong("grid has no size");
   for (const int bits : {options.normal_bits, options.texture_bits, options.weight_bits, options.other_bits})
     if (bits < kLeastAttributeBits || bits > kMostAttributeBits)
       return wrong(text("attributes of ", bits, " bits are not of ", kLeastAttributeBits, " to ", kMostAttributeBits));
-  if (mesh.groups.empty()) return wrong("mesh has no face group");
-  if (mesh.groups.size() > kMaxGroups || mesh.attributes.size() > kMaxAttributes)
-    return fail(ErrorCode::LimitExceeded, text("compact stream: ", mesh.groups.size(), " groups and ",
-                                               mesh.attributes.size(), " attributes are too many"));
   return {};
 }
 
@@ -52,7 +46,35 @@ CompactGrid box_of(const ProgressiveMesh& mesh) {
   }
   if (mesh.positions.empty()) return {};
   const float range = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-  return {low, range > 0 && std::isfinite(range) ? range : 1};
+  return {low, range == 0 ? 1 : range};
+}
+
+CompactGrid grid_of(const ProgressiveMesh& mesh, const CompactOptions& options) {
+  return options.grid ? *options.grid : box_of(mesh);
+}
+
+/// Where a value lies on an axis of a grid, in its steps.
+double steps_of(float value, float origin, float range, int bits) {
+  const double top = static_cast<double>((1 << bits) - 1);
+  return (static_cast<double>(value) - static_cast<double>(origin)) * top / static_cast<double>(range);
+}
+
+/// Checks that a grid is one, and holds all positions but for rounding.
+Result<void> check_grid(const ProgressiveMesh& mesh, const CompactGrid& grid, int bits) {
+  const Vec3f& o = grid.origin;
+  if (!(grid.range > 0)) return wrong("grid has no size");
+  for (const float value : {o.x, o.y, o.z, grid.range, o.x + grid.range, o.y + grid.range, o.z + grid.range})
+    if (!std::isfinite(value)) return wrong("grid goes beyond what floats can say");
+  const auto is_within = [&](float value, float origin) {
+    const double steps = steps_of(value, origin, grid.range, bits);
+    return steps >= -0.5 && steps <= static_cast<double>((1 << bits) - 1) + 0.5;  // not of what is no number
+  };
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3f& p = mesh.positions[v];
+    if (!is_within(p.x, o.x) || !is_within(p.y, o.y) || !is_within(p.z, o.z))
+      return wrong(text("vertex ", v, " lies outside the grid"));
+  }
+  return {};
 }
 
 /// By position: the largest error there or at a finer one. Measured bounds may be lower at coarser levels.
@@ -67,6 +89,27 @@ std::uint64_t full_face_count(const ProgressiveMesh& mesh) {
   return count;
 }
 
+/// Checks that there is no more of anything than a stream can hold.
+Result<void> check_counts(const ProgressiveMesh& mesh) {
+  if (mesh.groups.empty()) return wrong("mesh has no face group");
+  if (mesh.groups.size() > kMaxGroups || mesh.attributes.size() > kMaxAttributes)
+    return beyond(text(mesh.groups.size(), " groups and ", mesh.attributes.size(), " attributes are too many"));
+  for (const Attribute& attribute : mesh.attributes) {
+    if (attribute.name.size() > kMaxNameBytes)
+      return beyond(text("attribute's name of ", attribute.name.size(), " bytes has more than ", kMaxNameBytes));
+    if (attribute.component_count == 0 || attribute.component_count > kMostComponents)
+      return beyond(text("attribute ", attribute.name, " of ", int{attribute.component_count},
+                         " components has none, or more than ", kMostComponents));
+  }
+  const std::uint64_t vertices = mesh.positions.size(), wedges = mesh.wedge_vertex.size();
+  if (std::max({full_face_count(mesh), vertices, wedges}) >= kEndOfCounts)
+    return beyond(text(full_face_count(mesh), " faces, ", vertices, " vertices and ", wedges, " wedges are too many"));
+  for (std::size_t r = 0; r < mesh.record_count(); ++r)
+    if (const Index count = mesh.record_wedge_begin[r + 1] - mesh.record_wedge_begin[r]; count > kMostWedgesEach)
+      return beyond(text("record ", r, " of ", count, " wedges has more than ", kMostWedgesEach));
+  return {};
+}
+
 LevelLimits limits_of(const ProgressiveMesh& mesh, const CompactOptions& options) {
   LevelLimits limits;
   limits.grid_bits = options.grid_bits;
@@ -77,7 +120,7 @@ LevelLimits limits_of(const ProgressiveMesh& mesh, const CompactOptions& options
   return limits;
 }
 
-/// Encodes a progressive mesh. Pre: `check` found nothing.
+/// Encodes a progressive mesh. Pre: the checks found nothing.
 class CompactEncoder {
  public:
   CompactEncoder(const ProgressiveMesh& mesh, const CompactOptions& options)
@@ -87,7 +130,7 @@ class CompactEncoder {
         coded_(mesh),
         planner_(mesh, coded_, levels_.mesh()) {
     header_.grid_bits = options.grid_bits;
-    header_.grid = options.grid ? *options.grid : box_of(mesh);
+    header_.grid = grid_of(mesh, options);
     header_.attributes = specs_;
     for (const FaceGroup& group : mesh.groups)
       header_.groups.push_back({group.material, static_cast<Index>(group.base_corners.size() / 3)});
@@ -151,8 +194,7 @@ class CompactEncoder {
 Vec3i CompactEncoder::grid_position(Index vertex) const {
   const auto on_axis = [&](float value, float origin) {
     const double top = static_cast<double>((1 << header_.grid_bits) - 1);
-    const double steps =
-        (static_cast<double>(value) - static_cast<double>(origin)) * top / static_cast<double>(header_.grid.range);
+    const double steps = steps_of(value, origin, header_.grid.range, header_.grid_bits);
     return static_cast<std::int64_t>(std::floor(std::clamp(steps, 0.0, top) + 0.5));
   };
   const Vec3f& p = mesh_.positions[vertex];
@@ -443,11 +485,13 @@ Result<CompactStream> CompactEncoder::run() {
     if (end == first) return unsupported(text("record ", first, " does not fit its level"));
     LODESTONE_CHECK(write_round(first, end));
   }
-  if (!levels_.may_end_chunk())
-    return fail(ErrorCode::LimitExceeded, "compact stream: polygons of records have too many corners");
+  if (!levels_.may_end_chunk()) return beyond("polygons of records have too many corners");
   end_chunk();
   result_.bytes = write_compact_header(header_);
   append_bytes(result_.bytes, body_);
+  // What is left that a reader would refuse, as errors that are not finite.
+  if (const auto read = read_compact_header(result_.bytes); !read)
+    return fail(ErrorCode::InvalidArgument, "compact stream: " + read.error().message);
   CompactSizes& s = result_.sizes;
   s.attributes = levels_.attributes().bits;
   s.header =
@@ -461,7 +505,9 @@ Result<CompactStream> CompactEncoder::run() {
 }  // namespace
 
 Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options) {
-  LODESTONE_CHECK(check(mesh, options));
+  LODESTONE_CHECK(check_options(options));
+  LODESTONE_CHECK(check_counts(mesh));
+  LODESTONE_CHECK(check_grid(mesh, grid_of(mesh, options), options.grid_bits));
   return CompactEncoder(mesh, options).run();
 }
 

@@ -656,4 +656,61 @@ TEST_CASE("options of compact streams out of range are refused") {
   CHECK(!encode_compact(mesh, options));
 }
 
+ErrorCode refusal_of(const ProgressiveMesh& mesh, const CompactOptions& options = {}) {
+  const auto stream = encode_compact(mesh, options);
+  REQUIRE(!stream);
+  CHECK(stream.error().message.starts_with("compact stream: "));
+  return stream.error().code;
+}
+
+TEST_CASE("a grid holds all positions, or the mesh is not encoded") {
+  const ProgressiveMesh mesh = progressive(grid(6, 0, 1));  // from 0 to 1
+  CompactOptions options;
+  options.grid_bits = 8;
+  const auto refused_on = [&](CompactGrid grid) {
+    options.grid = grid;
+    return refusal_of(mesh, options) == ErrorCode::InvalidArgument;
+  };
+  CHECK(refused_on({{0, 0, 0}, 0.9F}));
+  CHECK(refused_on({{0.1F, 0, 0}, 2}));
+  CHECK(refused_on({{0, 0, 0.1F}, 2}));
+  CHECK(refused_on({{NAN, 0, 0}, 2}));
+  CHECK(refused_on({{-3e38F, 0, 0}, HUGE_VALF}));
+  CHECK(refused_on({{-1, -1, 1e38F}, 3.4e38F}));
+  // Within half a step they are on the grid.
+  options.grid = CompactGrid{{0.4F / 255, 0, 0}, 1};
+  CHECK(encode_compact(mesh, options));
+
+  for (const float value : {NAN, HUGE_VALF, 3e38F}) {
+    ProgressiveMesh wide = mesh;
+    wide.positions.front().x = value;
+    wide.positions.back().x = -value;
+    CHECK(refusal_of(wide) == ErrorCode::InvalidArgument);
+  }
+}
+
+TEST_CASE("what a reader refuses is not written") {
+  const ProgressiveMesh mesh = progressive(grid(6, 0.1F, 1));
+  const auto with_attribute = [&](std::size_t name_bytes, std::uint8_t components) {
+    ProgressiveMesh other = mesh;
+    other.attributes.push_back({std::string(name_bytes, 'A'), ComponentType::UInt8, components, false, {}});
+    other.attributes.back().data.resize(mesh.wedge_vertex.size() * components);
+    return other;
+  };
+  CHECK(encode_compact(with_attribute(255, 16)));
+  CHECK(refusal_of(with_attribute(256, 1)) == ErrorCode::LimitExceeded);
+  CHECK(refusal_of(with_attribute(1, 17)) == ErrorCode::LimitExceeded);
+  CHECK(refusal_of(with_attribute(1, 0)) == ErrorCode::LimitExceeded);
+  ProgressiveMesh large = mesh;
+  large.groups[0].face_count = Index{1} << 30U;
+  CHECK(refusal_of(large) == ErrorCode::LimitExceeded);
+  ProgressiveMesh split = mesh;
+  split.wedge_vertex.resize(split.wedge_vertex.size() + 65536, split.wedge_vertex.back());
+  split.record_wedge_begin.back() += 65536;
+  CHECK(refusal_of(split) == ErrorCode::LimitExceeded);
+  ProgressiveMesh lost = mesh;
+  lost.curvature_error.front() = HUGE_VALF;
+  CHECK(refusal_of(lost) == ErrorCode::InvalidArgument);
+}
+
 }  // namespace lodestone::test

@@ -72,8 +72,9 @@ struct CompactChunk {
 ///
 /// Attributes are rounded, too, unless they are integers; their elements come back whole, one for each wedge.
 ///
-/// Deterministic. Errors: InvalidArgument for options; LimitExceeded; Unsupported where records do not fit the faces
-/// that they replace.
+/// Deterministic. Errors: InvalidArgument for options, and for positions outside the grid by more than half a step;
+/// LimitExceeded where the mesh has more of anything than a stream can hold; Unsupported where records do not fit the
+/// faces that they replace.
 Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options = {});
 
 /// Reads where the chunks lie and what they lead to; they need not be there yet. Errors: Malformed, Unsupported
