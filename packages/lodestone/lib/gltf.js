@@ -208,7 +208,8 @@ function watch(object, mesh, options) {
     const around = object.isInstancedMesh ? (object.boundingSphere ?? (object.computeBoundingSphere(), object.boundingSphere)) : geometry.boundingSphere;
     const scale = object.matrixWorld.getMaxScaleOnAxis();
     sphere.copy(around).applyMatrix4(object.matrixWorld);
-    mesh.want(options.pixelError / (scale * pixelsPerUnit(camera, height, sphere)), renderer.info.render.frame);
+    const wanted = options.pixelError / (scale * pixelsPerUnit(camera, height, sphere));
+    if (wanted >= 0) mesh.want(wanted, renderer.info.render.frame);
     before.call(object, renderer, scene, camera, geometry, ...rest);
   };
 }

@@ -66,6 +66,7 @@ export class LodestoneMesh extends Group {
     this.updateWorldMatrix(true, false);
     const scale = this.matrixWorld.getMaxScaleOnAxis();
     const wanted = this.pixelError / (scale * pixelsPerUnit(camera, height, this.#worldSphere(scale)));
+    if (!(wanted >= 0)) return; // seen from within, at no size
     if (wanted <= this.#wanted * STEP && wanted * STEP >= this.#wanted) return;
     this.#wanted = wanted;
     this.#stream.want(wanted);
