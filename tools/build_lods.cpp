@@ -25,9 +25,6 @@ namespace {
 
 using detail::text;
 
-/// Streams a fifth smaller than rounds by cost alone give, at hardly any error: see SimplifyOptions.
-constexpr double kDenseRounds = 1.5;
-
 /// The shares of the time; the rest is encoding.
 constexpr double kReadingShare = 0.05, kSimplifyingShare = 0.8;
 
@@ -100,7 +97,7 @@ Result<Outcome> build_stream_file(const BuildCommand& command, ProgressBar& bar)
   LODESTONE_TRY(const Mesh mesh, read_input(command));
 
   options.simplify.effort = command.effort;
-  options.simplify.dense_rounds = kDenseRounds;
+  options.simplify.dense_rounds = kStreamDenseRounds;
   options.simplify.progress = [&](double done) {
     bar.update("simplifying", kReadingShare + kSimplifyingShare * done);
     return !Interruption::is_wanted();

@@ -135,7 +135,8 @@ Result<std::optional<StreamFile>> read_stream_file(const std::filesystem::path& 
   StreamReader reader;
   const Result<void> read = reader.append(bytes).and_then([&] { return reader.finish(); });
   if (!read) return fail(read.error().code, quoted(path) + ": " + read.error().message, read.error().byte_offset);
-  return StreamFile{reader.mesh(), {reader.chunks().begin(), reader.chunks().end()}, bytes.size()};
+  std::vector<ReaderChunk> chunks(reader.chunks().begin(), reader.chunks().end());
+  return StreamFile{std::move(reader).take_mesh(), std::move(chunks), bytes.size()};
 }
 
 Error not_streamed(const std::filesystem::path& path, ErrorCode code, const std::string& why) {

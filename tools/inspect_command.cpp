@@ -151,12 +151,10 @@ void print_asset(const std::string& path, const DecodedAsset& asset, std::span<c
   for (const ListedStream& stream : streams) print_stream(stream);
 }
 
-constexpr std::uint16_t kCompactVersion = 3;
-
 /// Of a compact stream what there is of it: its chunks are not compressed by themselves, and have no curvature errors.
 Result<StreamDirectory> directory_of(std::span<const std::byte> stream) {
   const std::uint16_t version = stream_version(stream);
-  if (version < kCompactVersion) return read_stream_directory(stream);
+  if (version < kCompactStreamVersion) return read_stream_directory(stream);
   LODESTONE_TRY(const std::vector<CompactChunk> chunks, read_compact_chunks(stream));
   StreamDirectory directory;
   directory.version_major = version;

@@ -27,6 +27,11 @@ inline std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t at) 
 }
 inline float load_f32(std::span<const std::byte> bytes, std::size_t at) { return load<float>(bytes, at); }
 
+/// Returns bytes as the floats they are. Pre: they are aligned as those.
+inline std::span<const float> as_floats(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)};
+}
+
 /// Appends a value's bytes.
 template <class T>
 void append(std::vector<std::byte>& out, const T& value) {

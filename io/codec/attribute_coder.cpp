@@ -150,13 +150,8 @@ bool AttributeCoder::code_wedge(BitCoder& coder, const ElementPlace& place,
 void AttributeCoder::look(const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions) {
   for (auto& element : coders_) element->resize(wedges.size());
   if (!has_directions_) return;
-  normals_.assign(wedges.size(), {});
-  for (Index face = 0; face < mesh.face_count(); ++face) {
-    const Vec3i& p = positions[mesh.from(3 * face)];
-    const Vec3i n = cross(positions[mesh.from(3 * face + 1)] - p, positions[mesh.from(3 * face + 2)] - p);
-    for (Index c = 3 * face; c < 3 * face + 3; ++c) normals_[mesh.wedge(c)] = normals_[mesh.wedge(c)] + n;
-  }
-  for (Vec3i& n : normals_) n = unit(n);
+  look_at_normals(
+      mesh, positions, wedges.size(), [&](Index half) { return mesh.wedge(half); }, normals_);
 }
 
 bool AttributeCoder::code_base(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges,

@@ -266,7 +266,7 @@ std::uint64_t CompactHeader::least_bytes(const CompactChunkEntry& chunk, bool is
 std::vector<std::byte> write_compact_header(const CompactHeader& header) {
   std::vector<std::byte> out;
   for (const unsigned char c : kStreamMagic) out.push_back(std::byte{c});
-  append(out, kCompactMajor);
+  append(out, kCompactStreamVersion);
   append(out, kCompactMinor);
   append(out, std::uint32_t{0});
   append(out, static_cast<std::uint8_t>(header.grid_bits));
@@ -303,8 +303,8 @@ Result<CompactHeader> read_compact_header(std::span<const std::byte> bytes) {
   if (bytes.size() < kFixedBytes) return broken(text("ends inside the header: ", bytes.size(), " bytes"), bytes.size());
   if (std::memcmp(bytes.data(), kStreamMagic.data(), kStreamMagic.size()) != 0)
     return broken("does not begin as a stream", 0);
-  if (const auto major = load<std::uint16_t>(bytes, 8); major != kCompactMajor)
-    return fail(ErrorCode::Unsupported, text("version ", major, " is not ", kCompactMajor), 8);
+  if (const auto major = load<std::uint16_t>(bytes, 8); major != kCompactStreamVersion)
+    return fail(ErrorCode::Unsupported, text("version ", major, " is not ", kCompactStreamVersion), 8);
   const std::uint32_t header_bytes = load_u32(bytes, 12);
   if (header_bytes < kFixedBytes + kChecksumBytes || header_bytes > bytes.size())
     return broken(text("header of ", header_bytes, " bytes in ", bytes.size()), 12);

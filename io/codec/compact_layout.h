@@ -16,7 +16,6 @@ namespace lodestone::detail {
 
 // The fixed parts of a compact stream; docs/compact-stream.md is the description that counts.
 
-inline constexpr std::uint16_t kCompactMajor = 3;
 inline constexpr std::uint16_t kCompactMinor = 0;
 inline constexpr int kLeastGridBits = 8;
 inline constexpr int kMostGridBits = 16;

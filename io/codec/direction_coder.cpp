@@ -15,8 +15,6 @@ namespace {
 constexpr int kUsualMiss = 16 * 10;  // of 2^14
 constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
 
-int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(x)) + 1); }
-std::uint32_t hint(int value, int low, int step) { return bucket(value, low, step, NumberCoder::kHints); }
 std::int64_t length_of(const Vec3i& v) { return square_root(squared(v)); }
 
 /// What the faces around a wedge tell of its direction: unit vectors.
@@ -135,8 +133,8 @@ bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_
   const Vec3i point = sum == 0 ? Vec3i{0, 0, 16 * size} : expected * (16 * size) / sum;
   NumberCoder::Guess guess;
   guess.scale = std::max<std::int64_t>(1, exp2_16(log_error) * 16 * size / std::max<std::int64_t>(sum, 1 << kUnitBits));
-  guess.hints[0] = hint(log_error, 0, 14);
-  guess.hints[1] = hint(static_cast<int>(sum >> (kUnitBits - 4)), 16, 1);
+  guess.hints[0] = NumberCoder::hint(log_error, 0, 14);
+  guess.hints[1] = NumberCoder::hint(static_cast<int>(sum >> (kUnitBits - 4)), 16, 1);
   std::int64_t rest = size;
   for (int i = 1; i < 3; ++i) {
     const int c = (top + i) % 3;
@@ -147,7 +145,7 @@ bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_
     if (std::abs(coded) > rest) return false;
     rest -= std::abs(coded);
     numbers[at] = static_cast<std::int32_t>(coded);
-    guess.hints[2] = hint(log_of(16 * coded - guess.value), 0, 12);
+    guess.hints[2] = NumberCoder::hint(log_of(16 * coded - guess.value), 0, 12);
   }
   const auto at = static_cast<std::size_t>(top);
   const bool as_expected = (numbers[at] >= 0) == (expected[top] >= 0);

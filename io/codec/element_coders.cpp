@@ -4,13 +4,6 @@
 #include <cstdlib>
 
 namespace lodestone::detail {
-namespace {
-
-std::uint32_t log_hint(std::int64_t x) {
-  return bucket(log2_16(static_cast<std::uint64_t>(x) + 1), 0, 16, NumberCoder::kHints);
-}
-
-}  // namespace
 
 PlainElementCoder::PlainElementCoder(const AttributeSpec& spec)
     : ElementCoder(spec), misses_(spec.component_count, 256) {}
@@ -45,8 +38,8 @@ bool PlainElementCoder::code_element(BitCoder& coder, const ElementPlace& place,
     guess.value = mean;
     guess.scale = (spread + misses_[c]) / 2 + 1;
     guess.kind = static_cast<std::uint32_t>(std::min<std::size_t>(c, 3));
-    guess.hints[0] = spread == 0 ? 0 : 1 + log_hint(spread) * 14 / 15;
-    guess.hints[1] = log_hint(misses_[c]);
+    guess.hints[0] = spread == 0 ? 0 : 1 + NumberCoder::hint(log_of(spread), 0, 16) * 14 / 15;
+    guess.hints[1] = NumberCoder::hint(log_of(misses_[c]), 0, 16);
     guess.hints[2] = (spread == 0 ? 8 : 0) + off;
     const std::int64_t coded = numbers_.code(coder, numbers[c], guess);
     if (coded < lowest || coded > highest) return false;

@@ -23,6 +23,9 @@ constexpr int log2_16(std::uint64_t x) {
   return 16 * top + kLog[mantissa & 63U];
 }
 
+/// Returns 16 · log2(|x| + 1), likewise.
+inline int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(x)) + 1); }
+
 /// Returns 2^(x / 16), for x in 0 … 16 · 40, rounded down; 1 for less.
 constexpr std::int64_t exp2_16(int x) {
   constexpr std::array<std::uint16_t, 16> kExp = {4096, 4277, 4467, 4664, 4871, 5087, 5312, 5547,

@@ -11,8 +11,6 @@ namespace {
 enum Bit : std::uint32_t { kAny, kShapeHigh, kShapeLow, kShapeLow2, kSame, kNew };
 enum Number : std::uint32_t { kCounts, kSizes, kBack, kSectors };
 
-constexpr std::uint64_t ends_key(Index from, Index to) { return std::uint64_t{from} << 32U | to; }
-
 }  // namespace
 
 bool trace_polygon(const PatchMesh& mesh, std::span<const Index> faces, Index start, std::vector<Index>& polygon,

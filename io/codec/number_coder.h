@@ -4,6 +4,7 @@
 
 #include "codec/bit_coder.h"
 #include "codec/bit_mixer.h"
+#include "codec/fixed_point.h"
 
 namespace lodestone::detail {
 
@@ -11,6 +12,8 @@ namespace lodestone::detail {
 class NumberCoder {
  public:
   static constexpr std::uint32_t kHints = 16;
+  /// A value as a hint: its step from `low` on.
+  static constexpr std::uint32_t hint(int value, int low, int step) { return bucket(value, low, step, kHints); }
 
   /// What is known of a number before it is coded; lengths in sixteenths.
   struct Guess {

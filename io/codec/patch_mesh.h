@@ -9,6 +9,9 @@
 
 namespace lodestone::detail {
 
+/// What a table of half-edges finds them by.
+constexpr std::uint64_t ends_key(Index from, Index to) { return std::uint64_t{from} << 32U | to; }
+
 /// The faces of a level while rounds are coded, and what lies across their edges: neighbours by vertices, so that seams
 /// and the borders of groups do not cut the mesh. Half-edge 3f + i runs from corner i of face f to the next corner.
 class PatchMesh {

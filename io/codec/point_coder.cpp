@@ -26,10 +26,6 @@ constexpr int kUsualTangentMiss = -32;
 
 constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
 
-int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(x)) + 1); }
-
-std::uint32_t hint(int value, int low, int step) { return bucket(value, low, step, NumberCoder::kHints); }
-
 Vec3i over_radius(const Vec3i& v, std::int64_t radius) { return v * kOne / radius; }
 
 /// A normal distribution of three coordinates, taken apart: each one's mean and variance given those before it.
@@ -105,13 +101,8 @@ bool PointCoder::code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position
 }
 
 void PointCoder::start_round(const PatchMesh& mesh, std::span<const Vec3i> positions) {
-  normals_.assign(mesh.vertex_count(), {});
-  for (Index face = 0; face < mesh.face_count(); ++face) {
-    const Vec3i& p = positions[mesh.from(3 * face)];
-    const Vec3i n = cross(positions[mesh.from(3 * face + 1)] - p, positions[mesh.from(3 * face + 2)] - p);
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) normals_[mesh.from(h)] = normals_[mesh.from(h)] + n;
-  }
-  for (Vec3i& n : normals_) n = unit(n);
+  look_at_normals(
+      mesh, positions, mesh.vertex_count(), [&](Index half) { return mesh.from(half); }, normals_);
 }
 
 Vec3i PointCoder::guess(const PatchMesh& mesh, std::span<const Index> star, bool closed,
@@ -190,16 +181,18 @@ void PointCoder::code_coordinates(BitCoder& coder, Vec3i& position) {
   const Coordinates c = take_apart(ring_, exp2_16(log_ratio + 16 * kRatioBits));
   const std::int64_t sigma = exp2_16(size.tangent);
   NumberCoder::Guess guess;
-  guess.hints[2] = hint(ring_.size() - 3, 0, 1) % 4 * 4 + hint(size.tangent - size.normal, -16, 32) / 4;
-  if (ring_.size() > 6) guess.hints[2] = 12 + hint(size.tangent - size.normal, -16, 32) / 4;
+  guess.hints[2] =
+      NumberCoder::hint(ring_.size() - 3, 0, 1) % 4 * 4 + NumberCoder::hint(size.tangent - size.normal, -16, 32) / 4;
+  if (ring_.size() > 6) guess.hints[2] = 12 + NumberCoder::hint(size.tangent - size.normal, -16, 32) / 4;
   const auto code = [&](std::uint32_t which, std::int64_t mean) {
     const int axis = c.order[which];
     guess.value = prediction_.point[axis] + mean;
     const std::uint32_t root = square_root(static_cast<std::uint64_t>(c.variance[which]) << kRatioBits);
     guess.scale = sigma * root >> kRatioBits;
     guess.kind = which;
-    guess.hints[0] = hint(static_cast<int>(std::abs(ring_.normal[axis])), 0, 1025);
-    guess.hints[1] = has_misses_ ? std::min(14U, hint(which == 2 ? around_.normal : around_.tangent, -128, 8)) : 15;
+    guess.hints[0] = NumberCoder::hint(static_cast<int>(std::abs(ring_.normal[axis])), 0, 1025);
+    guess.hints[1] =
+        has_misses_ ? std::min(14U, NumberCoder::hint(which == 2 ? around_.normal : around_.tangent, -128, 8)) : 15;
     position[axis] = numbers_.code(coder, position[axis], guess);
     return std::clamp((position[axis] * 16) - prediction_.point[axis], -kMostResidual, kMostResidual);
   };

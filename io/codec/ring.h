@@ -17,6 +17,20 @@ inline constexpr int kRatioBits = 24;  ///< fractional bits of ratios of varianc
 
 /// Returns a vector of length 1, or the zero vector for itself.
 Vec3i unit(Vec3i v);
+/// Finds the unit normals of `count` vertices or wedges, the mean of the faces around by area; `left` says which of
+/// them a half-edge leaves.
+template <class Left>
+void look_at_normals(const PatchMesh& mesh, std::span<const Vec3i> positions, std::size_t count, const Left& left,
+                     std::vector<Vec3i>& normals) {
+  normals.assign(count, {});
+  for (Index face = 0; face < mesh.face_count(); ++face) {
+    const Vec3i& p = positions[mesh.from(3 * face)];
+    const Vec3i n = cross(positions[mesh.from(3 * face + 1)] - p, positions[mesh.from(3 * face + 2)] - p);
+    for (Index half = 3 * face; half < 3 * face + 3; ++half) normals[left(half)] = normals[left(half)] + n;
+  }
+  for (Vec3i& n : normals) n = unit(n);
+}
+
 /// The length of a vector along a unit vector; a unit vector times a length.
 inline std::int64_t along(const Vec3i& v, const Vec3i& unit) { return dot(v, unit) >> kUnitBits; }
 inline Vec3i times(const Vec3i& unit, std::int64_t length) {

@@ -3,11 +3,7 @@
 #include <algorithm>
 
 namespace lodestone::detail {
-namespace {
-
-constexpr std::uint64_t ends_key(Index from, Index to) { return std::uint64_t{from} << 32U | to; }
-
-}  // namespace
+namespace {}  // namespace
 
 CodedNumbers::CodedNumbers(const ProgressiveMesh& mesh)
     : vertex(mesh.positions.size(), kNoIndex), wedge(mesh.wedge_vertex.size(), kNoIndex) {

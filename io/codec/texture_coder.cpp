@@ -19,9 +19,6 @@ constexpr int kUsualMiss = -32;
 constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1);
 constexpr std::int32_t kWhole = 1 << OnlineFit<1>::kFraction;
 
-int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(std::abs(x)) + 1); }
-std::uint32_t hint_of(int value, int low, int step) { return bucket(value, low, step, NumberCoder::kHints); }
-
 Vec3i normal_of(const ElementPlace& place) {
   Vec3i sum;
   for (const Index face : place.faces) {
@@ -164,7 +161,7 @@ bool TextureCoder::code_pair(BitCoder& coder, const Pair& expected, std::int64_t
   NumberCoder::Guess guess;
   guess.scale = std::max<std::int64_t>(error, 1);
   guess.hints[0] = hint;
-  guess.hints[1] = hint_of(log_of(error), 0, 12);
+  guess.hints[1] = NumberCoder::hint(log_of(error), 0, 12);
   for (std::size_t c = 0; c < 2; ++c) {
     guess.kind = 2 * kind + static_cast<std::uint32_t>(c);
     guess.value = std::clamp(expected[c], 16 * lowest, 16 * highest);
@@ -172,7 +169,7 @@ bool TextureCoder::code_pair(BitCoder& coder, const Pair& expected, std::int64_t
     if (coded < lowest || coded > highest) return false;
     numbers[c] = static_cast<std::int32_t>(coded);
     const std::int64_t off = std::abs(16 * coded - guess.value);
-    guess.hints[2] = hint_of(log_of(off + guess.scale / 16) - log_of(guess.scale) + 64, 0, 8);
+    guess.hints[2] = NumberCoder::hint(log_of(off + guess.scale / 16) - log_of(guess.scale) + 64, 0, 8);
   }
   return true;
 }
@@ -210,7 +207,7 @@ bool TextureCoder::code_element(BitCoder& coder, const ElementPlace& place, std:
   const Traits::Features traits = {
       64, around, relative(across(0)), relative(guess.bend), relative(16), relative(across(2)), relative(across(1))};
   const auto log_error = static_cast<int>(std::clamp<std::int64_t>(log_radius + size.predict(traits), 0, 16 * 30));
-  if (!code_pair(coder, expected, exp2_16(log_error), is_open_ ? 1 : 0, hint_of(around, -112, 8), numbers))
+  if (!code_pair(coder, expected, exp2_16(log_error), is_open_ ? 1 : 0, NumberCoder::hint(around, -112, 8), numbers))
     return false;
 
   std::int64_t off = 3;

@@ -4,13 +4,6 @@
 #include <cstdlib>
 
 namespace lodestone::detail {
-namespace {
-
-std::uint32_t log_hint(std::int64_t x) {
-  return bucket(log2_16(static_cast<std::uint64_t>(x) + 1), 0, 12, NumberCoder::kHints);
-}
-
-}  // namespace
 
 WeightCoder::WeightCoder(const AttributeSpec& spec, const SkinSets& skin, std::size_t set)
     : ElementCoder(spec), skin_(skin), set_(set) {}
@@ -48,9 +41,9 @@ bool WeightCoder::code_element(BitCoder& coder, const ElementPlace& place, std::
     const std::int64_t slack = std::min(guess.value, 16 * rest - guess.value);
     guess.scale = std::max<std::int64_t>(8, std::min(slack, 2 * miss_) / 2 + miss_ / 8);
     guess.kind = static_cast<std::uint32_t>(std::min<std::size_t>(c, 3));
-    guess.hints[0] = log_hint(slack);
-    guess.hints[1] = log_hint(guess.value);
-    guess.hints[2] = has_ring ? log_hint(miss_) / 2 : 15;
+    guess.hints[0] = NumberCoder::hint(log_of(slack), 0, 12);
+    guess.hints[1] = NumberCoder::hint(log_of(guess.value), 0, 12);
+    guess.hints[2] = has_ring ? NumberCoder::hint(log_of(miss_), 0, 12) / 2 : 15;
     const std::int64_t coded = numbers_.code(coder, numbers[c], guess);
     if (coded < 0 || coded > rest) return false;
     numbers[c] = static_cast<std::int32_t>(coded);

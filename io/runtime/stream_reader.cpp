@@ -27,7 +27,7 @@ constexpr std::uint64_t kStartBytes = 16;
 constexpr std::size_t kMajorAt = 8, kHeaderBytesAt = 12;
 
 /// The first version that is read: those before the compact stream need zstd, which not every build has.
-constexpr std::uint16_t kFirstMajor = LODESTONE_REMOVAL_STREAMS ? 1 : kCompactMajor;
+constexpr std::uint16_t kFirstMajor = LODESTONE_REMOVAL_STREAMS ? 1 : kCompactStreamVersion;
 
 /// Of either format's chunks, the first of which holds no records where that is how the format has it.
 template <class Chunk>
@@ -59,6 +59,7 @@ class StreamReader::State {
   bool done() const { return !chunks_.empty() && chunk_count_ == chunks_.size(); }
   const std::optional<Error>& error() const { return error_; }
   const ProgressiveMesh& mesh() const { return mesh_; }
+  ProgressiveMesh take_mesh() { return std::move(mesh_); }
 
  private:
 #if LODESTONE_REMOVAL_STREAMS
@@ -134,10 +135,11 @@ Result<void> StreamReader::State::take_unit(std::span<const std::byte> bytes) {
 Result<void> StreamReader::State::read_start(std::span<const std::byte> bytes) {
   if (!is_stream(bytes)) return fail(ErrorCode::Malformed, "stream: does not begin with the magic number", 0);
   const auto major = load<std::uint16_t>(bytes, kMajorAt);
-  if (major < kFirstMajor || major > kCompactMajor)
+  if (major < kFirstMajor || major > kCompactStreamVersion)
     return fail(ErrorCode::Unsupported,
-                text("stream: version ", major, ", where ", kFirstMajor, " to ", kCompactMajor, " are read"), kMajorAt);
-  is_compact_ = major == kCompactMajor;
+                text("stream: version ", major, ", where ", kFirstMajor, " to ", kCompactStreamVersion, " are read"),
+                kMajorAt);
+  is_compact_ = major == kCompactStreamVersion;
   const std::uint32_t header_bytes = load_u32(bytes, kHeaderBytesAt);
   if (header_bytes <= kStartBytes)
     return fail(ErrorCode::Malformed, text(name(), "header of ", header_bytes, " bytes"), kHeaderBytesAt);
@@ -205,6 +207,7 @@ std::size_t StreamReader::chunk_count() const { return state_->chunk_count(); }
 bool StreamReader::done() const { return state_->done(); }
 const std::optional<Error>& StreamReader::error() const { return state_->error(); }
 const ProgressiveMesh& StreamReader::mesh() const { return state_->mesh(); }
+ProgressiveMesh StreamReader::take_mesh() && { return state_->take_mesh(); }
 
 std::uint16_t stream_version(std::span<const std::byte> bytes) {
   return is_stream(bytes) && bytes.size() >= kMajorAt + sizeof(std::uint16_t) ? load<std::uint16_t>(bytes, kMajorAt)
@@ -215,7 +218,7 @@ Result<ProgressiveMesh> read_stream(std::span<const std::byte> bytes) {
   StreamReader reader;
   LODESTONE_CHECK(reader.append(bytes));
   LODESTONE_CHECK(reader.finish());
-  return reader.mesh();
+  return std::move(reader).take_mesh();
 }
 
 }  // namespace lodestone

@@ -15,10 +15,6 @@
 namespace lodestone::detail {
 namespace {
 
-std::span<const float> as_floats(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)};
-}
-
 /// Of a grid whose steps are powers of two.
 int exponent_of(const QuantizationGrid& grid) { return std::ilogb(grid.step()); }
 

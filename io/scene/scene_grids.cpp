@@ -11,6 +11,7 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
+#include "base/bytes.h"
 #include "scene/meshopt_accessors.h"
 
 namespace lodestone::detail {
@@ -131,12 +132,6 @@ class GridFitter {
   int unit_ = std::numeric_limits<int>::max();
   bool finite_ = true;
 };
-
-std::span<const float> as_floats(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const float*>(bytes.data()), bytes.size() / sizeof(float)};
-}
-
-std::span<const float> as_floats(std::span<const Vec3f> points) { return as_floats(std::as_bytes(points)); }
 
 /// How finely values of an attribute are kept.
 struct Fineness {
@@ -263,7 +258,7 @@ class SharedGrid {
   }
 
   /// Adds a level of a mesh, which must lie in the grid.
-  void add(const Mesh& level) { fitter_.add(as_floats(level.positions)); }
+  void add(const Mesh& level) { fitter_.add(as_floats(std::as_bytes(std::span(level.positions)))); }
 
   QuantizationGrid grid() const {
     if (options_.position_grid) return given_grid(*options_.position_grid, options_.compression);

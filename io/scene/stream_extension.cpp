@@ -2,15 +2,15 @@
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/io/compact_stream.h>
 #include <lodestone/io/stream_reader.h>
 
 #include "base/bytes.h"
-#include "codec/compact_layout.h"
 #include "gltf/gltf_container.h"
 
 namespace lodestone::detail {
 
-bool is_compact(std::span<const std::byte> stream) { return stream_version(stream) == kCompactMajor; }
+bool is_compact(std::span<const std::byte> stream) { return stream_version(stream) == kCompactStreamVersion; }
 
 std::string version_text(std::span<const std::byte> stream) {
   constexpr std::size_t kMinorAt = 10;
@@ -20,7 +20,7 @@ std::string version_text(std::span<const std::byte> stream) {
 
 bool shows_level_of_stream(const Json& mesh) {
   const Json* extension = GltfDocument::extension(mesh, kStreamExtension);
-  return extension != nullptr && string_member(*extension, "version").starts_with("3.");
+  return extension != nullptr && string_member(*extension, "version").starts_with(text(kCompactStreamVersion, "."));
 }
 
 Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh, const FileFetcher& fetch) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <lodestone/core/detail/text.h>
@@ -19,6 +18,7 @@
 #include "pipeline/level_measure.h"
 #include "pipeline/level_plan.h"
 #include "pipeline/make_levels.h"
+#include "pipeline/shown_level.h"
 #include "pipeline/simplify_scene.h"
 #include "pipeline/stopwatch.h"
 
@@ -180,40 +180,6 @@ Result<void> make_file(MeasuredScene& measured, const LevelPlan& plan, const std
   return {};
 }
 
-/// Appends one face of a mesh to a level of it, with vertices of its own.
-void append_face(const Mesh& whole, Index face, Mesh& level) {
-  if (level.attributes.empty())
-    for (const Attribute& a : whole.attributes)
-      level.attributes.push_back({a.name, a.type, a.component_count, a.normalized, {}});
-  level.face_material.resize(level.face_count(), 0);
-  level.face_material.push_back(whole.material_of(face));
-  for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
-    const std::size_t wedge = whole.corner_wedge[corner];
-    level.corner_wedge.push_back(static_cast<Index>(level.wedge_count()));
-    level.wedge_vertex.push_back(static_cast<Index>(level.vertex_count()));
-    level.positions.push_back(whole.positions[whole.wedge_vertex[wedge]]);
-    for (std::size_t i = 0; i < level.attributes.size(); ++i) {
-      const Attribute& a = whole.attributes[i];
-      const auto first = a.data.begin() + static_cast<std::ptrdiff_t>(wedge * a.element_bytes());
-      level.attributes[i].data.insert(level.attributes[i].data.end(), first,
-                                      first + static_cast<std::ptrdiff_t>(a.element_bytes()));
-    }
-  }
-}
-
-/// A level that is shown has something of each primitive, where its stream's faces go: one of the mesh's own, if the
-/// level has lost all of them.
-void keep_every_material(const Scene& scene, const LevelPlan& plan, std::vector<LeveledMesh>& levels) {
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const Mesh& whole = scene.meshes()[i].mesh;
-    Mesh& shown = levels[i].levels[plan.level_count() - 1].mesh;
-    std::set<Index> materials;
-    for (Index face = 0; face < shown.face_count(); ++face) materials.insert(shown.material_of(face));
-    for (Index face = 0; face < whole.face_count(); ++face)
-      if (materials.insert(whole.material_of(face)).second) append_face(whole, face, shown);
-  }
-}
-
 /// What streams lead to in the end, measured as they are decoded.
 Result<void> measure_refined(MeasuredScene& measured, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
                              const BuildOptions& options, BuildResult& result, BuildObserver& observer) {
@@ -276,7 +242,10 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   const Progress making = stage_progress(observer, BuildStage::MakingLevels);
   LevelPlan plan = plan_levels(measured, result.simplified, options, fitter, making.part(0));
   LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(measured, result.simplified, plan, fitter, making));
-  if (options.layout == FileLayout::Refined) keep_every_material(scene, plan, levels);
+  if (options.layout == FileLayout::Refined) {
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      keep_every_material(scene.meshes()[i].mesh, levels[i].levels.back().mesh);
+  }
   report_plan(scene, plan, levels, result);
   result.timings_ms.levels = stopwatch.lap_ms();
   if (options.strict && !result.met) return result;

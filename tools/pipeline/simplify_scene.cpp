@@ -28,9 +28,6 @@ StopCriteria stop_criteria(const Scene& scene, const SceneMesh& mesh, const Buil
   return stop;
 }
 
-// Compact streams are a fifth smaller than with rounds by cost alone, at hardly any error: see SimplifyOptions.
-constexpr double kDenseRounds = 1.5;
-
 /// How much of the faces goes between two measurements of what bounds are: the less work they may be, the more.
 double measure_step(int effort) {
   if (effort <= 2) return 0.4;
@@ -41,7 +38,7 @@ Result<SimplifyOptions> options_for(const Scene& scene, const SceneMesh& mesh, c
   SimplifyOptions options = build.simplify;
   options.effort = build.effort;
   options.measure_step = measure_step(build.effort);
-  if (build.layout == FileLayout::Refined) options.dense_rounds = kDenseRounds;
+  if (build.layout == FileLayout::Refined) options.dense_rounds = kStreamDenseRounds;
   options.stop = stop_criteria(scene, mesh, build);
   options.weights.target_reach = mesh.target_reach;
   LODESTONE_TRY(options.importance, vertex_importance(mesh, build.importance));

@@ -12,6 +12,9 @@
 
 namespace lodestone {
 
+/// The major version of compact streams, which those before it are not.
+inline constexpr std::uint16_t kCompactStreamVersion = 3;
+
 /// The cube whose grid positions are rounded to: equal for all meshes that must not come apart.
 struct CompactGrid {
   Vec3f origin;     ///< its least corner

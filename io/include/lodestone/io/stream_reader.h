@@ -78,6 +78,8 @@ class StreamReader {
   /// The mesh so far, at the same address as long as the reader lives, wherever that is moved; without anything before
   /// the first chunk.
   const ProgressiveMesh& mesh() const;
+  /// Gives the mesh away; the reader is of no use then.
+  ProgressiveMesh take_mesh() &&;
 
  private:
   class State;

@@ -25,6 +25,10 @@ enum class FileLayout {
   Refined,       ///< one file of the coarsest level and a compact stream of every other, up to the whole mesh
 };
 
+/// SimplifyOptions::dense_rounds of compact streams: a fifth smaller than with rounds by cost alone, at hardly any
+/// error.
+inline constexpr double kStreamDenseRounds = 1.5;
+
 /// What is built of a scene.
 struct BuildOptions {
   int effort = kDefaultEffort;  ///< 1 … 9, see core/effort.h: of simplifying, of measuring bounds and of fitting levels
