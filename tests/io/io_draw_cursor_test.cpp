@@ -10,23 +10,11 @@
 #include "support/counted_memory.h"
 #include "support/data.h"
 #include "support/mesh_properties.h"
+#include "support/progressive_shapes.h"
 #include "support/random.h"
 
 namespace lodestone::test {
 namespace {
-
-std::vector<ProgressiveMesh> meshes() {
-  std::vector<ProgressiveMesh> all;
-  SimplifyOptions options;
-  options.measure_step = 0;
-  options.vanish = true;
-  for (const NamedShape& shape : all_shapes()) {
-    const auto assembled = assemble(shape.soup);
-    if (assembled && assembled->mesh.face_count() > 0)
-      all.push_back(std::move(simplify(assembled->mesh, options).value().mesh));
-  }
-  return all;
-}
 
 /// What an engine has: buffers into which only the ranges named are written.
 class Engine {
@@ -94,7 +82,7 @@ ProgressiveMesh dense(const TriangleSoup& soup) {
 
 TEST_CASE("who writes the ranges named and no others has the buffers of the level, whatever the moves") {
   Random random(3);
-  for (const ProgressiveMesh& mesh : meshes()) {
+  for (const ProgressiveMesh& mesh : progressive_shapes()) {
     DrawCursor cursor(mesh);
     Engine engine(mesh, cursor);
     for (int i = 0; i < 30; ++i) {
@@ -158,7 +146,7 @@ TEST_CASE("a small move uploads little, none nothing, and moves allocate nothing
 }
 
 TEST_CASE("normals are those of the faces around, one for all wedges of a vertex") {
-  for (const ProgressiveMesh& mesh : meshes()) {
+  for (const ProgressiveMesh& mesh : progressive_shapes()) {
     DrawCursor cursor(mesh);
     cursor.seek(static_cast<Index>(mesh.record_count() / 2));
     std::vector<float> normals(3 * cursor.wedge_count());

@@ -3,10 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include <lodestone/lod/simplify.h>
-
 #include "support/catch.h"
-#include "support/mesh_properties.h"
+#include "support/progressive_shapes.h"
 #include "support/random.h"
 
 namespace lodestone::test {
@@ -19,24 +17,10 @@ std::vector<std::vector<Index>> buffers(const ProgressiveMesh& mesh, const Curso
   return all;
 }
 
-/// The streams of all families of shapes that have faces.
-std::vector<ProgressiveMesh> streams() {
-  std::vector<ProgressiveMesh> meshes;
-  SimplifyOptions options;
-  options.measure_step = 0;
-  options.vanish = true;
-  for (const NamedShape& shape : all_shapes()) {
-    const auto assembled = assemble(shape.soup);
-    if (assembled && assembled->mesh.face_count() > 0)
-      meshes.push_back(std::move(simplify(assembled->mesh, options).value().mesh));
-  }
-  return meshes;
-}
-
 }  // namespace
 
 TEST_CASE("a level does not depend on the way to it") {
-  for (const ProgressiveMesh& mesh : streams()) {
+  for (const ProgressiveMesh& mesh : progressive_shapes()) {
     const auto count = static_cast<Index>(mesh.record_count());
     Cursor walker(mesh);
     Random random(count);
@@ -52,7 +36,7 @@ TEST_CASE("a level does not depend on the way to it") {
 }
 
 TEST_CASE("steps are seeks by one, and undo each other") {
-  for (const ProgressiveMesh& mesh : streams()) {
+  for (const ProgressiveMesh& mesh : progressive_shapes()) {
     Cursor cursor(mesh);
     while (cursor.position() < mesh.record_count()) {
       const auto before = buffers(mesh, cursor);
@@ -67,7 +51,7 @@ TEST_CASE("steps are seeks by one, and undo each other") {
 }
 
 TEST_CASE("counts are those of the buffers and of the stream, at every position") {
-  for (const ProgressiveMesh& mesh : streams()) {
+  for (const ProgressiveMesh& mesh : progressive_shapes()) {
     const std::vector<Index> faces = face_counts(mesh);
     Cursor cursor(mesh);
     for (Index position = 0; position <= mesh.record_count(); ++position) {
@@ -86,7 +70,7 @@ TEST_CASE("counts are those of the buffers and of the stream, at every position"
 }
 
 TEST_CASE("seeking stops at the ends, and buffers stay where they are") {
-  for (const ProgressiveMesh& mesh : streams()) {
+  for (const ProgressiveMesh& mesh : progressive_shapes()) {
     Cursor cursor(mesh);
     std::vector<const Index*> places;
     for (std::size_t group = 0; group < mesh.groups.size(); ++group) places.push_back(cursor.corners(group).data());

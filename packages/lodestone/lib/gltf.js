@@ -2,12 +2,9 @@
 // by how they are seen. What the file shows at first is a mesh as any other, in place of which its stream's levels come.
 import { Box3, LoaderUtils, Sphere, Vector2 } from 'three';
 import { LodestoneStream } from './index.js';
-import { StreamBuffers, nameOf, pixelsPerUnit } from './three_buffers.js';
+import { STEP, StreamBuffers, nameOf, pixelsPerUnit } from './three_buffers.js';
 
 const EXTENSION = 'LODESTONE_removal_stream';
-
-/** How much what is wanted must change before it is said again. */
-const STEP = 1.05;
 const PATIENCE = 300; // milliseconds before it is coarsened
 
 /** A mesh of the file with its stream. */

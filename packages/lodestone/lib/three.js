@@ -1,12 +1,9 @@
 // A stream as an object of three.js, that refines and coarsens as the camera moves.
 import { Box3, BufferGeometry, Group, Mesh, MeshStandardMaterial, Sphere } from 'three';
 import { LodestoneStream } from './index.js';
-import { StreamBuffers, pixelsPerUnit } from './three_buffers.js';
+import { STEP, StreamBuffers, pixelsPerUnit } from './three_buffers.js';
 
 export { pixelsPerUnit };
-
-/** How much what is wanted must change before it is said again. */
-const STEP = 1.05;
 
 /**
  * A mesh that arrives while it is drawn: a group with a mesh for each material. Call `update(camera, height)` before each

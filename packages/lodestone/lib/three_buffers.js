@@ -2,6 +2,9 @@
 // vertices.
 import { BufferAttribute, Vector3 } from 'three';
 
+/** How much what is wanted must change before it is said again. */
+export const STEP = 1.05;
+
 const NAMES = {
   POSITION: 'position',
   NORMAL: 'normal',
