@@ -103,9 +103,12 @@ Result<Outcome> build_stream_file(const BuildCommand& command, ProgressBar& bar)
     return !Interruption::is_wanted();
   };
   LODESTONE_TRY(const SimplifyResult simplified, simplify(mesh, options.simplify));
-  bar.update("encoding", kReadingShare + kSimplifyingShare);
   CompactOptions compact;
   compact.grid_bits = command.position_bits.value_or(compact.grid_bits);
+  compact.progress = [&](double done) {
+    bar.update("encoding", kReadingShare + kSimplifyingShare + (1 - kReadingShare - kSimplifyingShare) * done);
+    return !Interruption::is_wanted();
+  };
   LODESTONE_TRY(const CompactStream stream, encode_compact(simplified.mesh, compact));
   bar.clear();
   if (Interruption::is_wanted()) return fail(ErrorCode::Cancelled, "cancelled");

@@ -140,11 +140,11 @@ bool AttributeCoder::code_wedge(BitCoder& coder, const ElementPlace& place,
     const std::size_t size = coders_[i]->spec().component_count;
     std::span<const std::int32_t> numbers;
     if (!given.empty()) numbers = std::span(given[i]).subspan((place.wedge - first_given) * size, size);
-    const double before = given.empty() ? 0 : coder.bits();
+    const double before = counts ? coder.bits() : 0;
     if (!coders_[i]->code(coder, place, numbers)) return false;
-    if (!given.empty()) bits[i] += coder.bits() - before;
+    if (counts) bits[i] += coder.bits() - before;
   }
-  return true;
+  return coder.goes_on();
 }
 
 void AttributeCoder::look(const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions) {

@@ -96,8 +96,9 @@ class AttributeCoder {
                    Index vertex, std::span<const Index> faces, std::span<const std::vector<std::int32_t>> given,
                    Index first_given);
 
-  /// By attribute: what has been written of it, in bits.
+  /// By attribute: what has been coded of it, in bits; only where they are counted.
   std::vector<double> bits;
+  bool counts = false;
 
  private:
   bool code_wedge(BitCoder& coder, const ElementPlace& place, std::span<const std::vector<std::int32_t>> given,

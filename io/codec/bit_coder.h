@@ -9,6 +9,13 @@
 
 namespace lodestone::detail {
 
+/// Hears from a writer that it is at work; false ends that.
+class WorkListener {
+ public:
+  virtual ~WorkListener() = default;
+  virtual bool step() = 0;
+};
+
 /// A binary range coder. One class writes and reads, so that what models the bits is written once: `code` takes the bit
 /// when it writes, and gives it when it reads.
 class BitCoder {
@@ -52,10 +59,16 @@ class BitCoder {
     return std::move(output_);
   }
 
-  /// How many bits have been written, as a real number: for reports alone.
+  /// How many bits have been written or read, as a real number: for reports alone.
   double bits() const {
-    return 8 * static_cast<double>(output_.size()) + 32 - std::log2(static_cast<double>(high_ - low_) + 1);
+    const std::size_t done = reading_ ? read_ - 4 : output_.size();
+    return 8 * static_cast<double>(done) + 32 - std::log2(static_cast<double>(high_ - low_) + 1);
   }
+
+  /// Sets who hears of a writer's steps; nobody with null.
+  void set_listener(WorkListener* listener) { listener_ = listener; }
+  /// Whether the work goes on: asked for every vertex and face, so that it ends soon.
+  bool goes_on() const { return listener_ == nullptr || listener_->step(); }
 
  private:
   void shift() {
@@ -76,6 +89,7 @@ class BitCoder {
   std::span<const std::byte> input_;
   std::size_t read_ = 0;
   std::vector<std::byte> output_;
+  WorkListener* listener_ = nullptr;
 };
 
 }  // namespace lodestone::detail

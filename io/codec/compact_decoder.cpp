@@ -26,12 +26,49 @@ CompactDecoder::CompactDecoder(CompactHeader header, ProgressiveMesh& mesh, std:
       mesh_(mesh),
       most_bytes_(most_bytes) {}
 
+void CompactDecoder::count_rounds(std::vector<CompactRound>& rounds) {
+  rounds_ = &rounds;
+  levels_.count_attributes();
+}
+
+void CompactDecoder::start_round() {
+  if (rounds_ == nullptr) return;
+  CompactRound& round = rounds_->emplace_back();
+  round.chunk = chunk_count_;
+  for (const double bits : levels_.attributes().bits) round.sizes.attributes.push_back(-bits);
+}
+
+/// Adds what was read since the last call to a part of the round.
+void CompactDecoder::spend(const BitCoder& coder, double CompactSizes::*part) {
+  if (rounds_ == nullptr) return;
+  const double now = coder.bits();
+  rounds_->back().sizes.*part += now - bits_at_;
+  bits_at_ = now;
+}
+
+/// Passes over what was read of attributes: that is counted where it is.
+void CompactDecoder::pass_attributes(const BitCoder& coder) {
+  if (rounds_ != nullptr) bits_at_ = coder.bits();
+}
+
+void CompactDecoder::end_round() {
+  if (rounds_ == nullptr) return;
+  CompactRound& round = rounds_->back();
+  const std::vector<double>& bits = levels_.attributes().bits;
+  for (std::size_t a = 0; a < bits.size(); ++a) round.sizes.attributes[a] += bits[a];
+  round.record_count = levels_.vertices().count();
+  round.vertex_count = mesh_.positions.size();
+  round.face_count = levels_.mesh().face_count();
+  round.deviation = mesh_.deviation.back();
+}
+
 /// Reads the errors of the last position.
 Result<void> CompactDecoder::read_errors(BitCoder& coder) {
   int curvature = 0;
   if (!errors_.code(coder, deviation_code_, curvature)) return broken("errors rise");
   mesh_.deviation.back() = header_.deviation.value(deviation_code_);
   mesh_.curvature_error.back() = header_.curvature.value(curvature);
+  spend(coder, &CompactSizes::errors);
   return {};
 }
 
@@ -91,6 +128,7 @@ Result<void> CompactDecoder::check_base_bytes() const {
 
 Result<void> CompactDecoder::read_base(BitCoder& coder) {
   LODESTONE_CHECK(check_base_bytes());
+  start_round();
   BaseMesh base;
   const auto face_count = static_cast<std::size_t>(header_.base_face_count());
   base.corners.resize(3 * face_count);
@@ -103,11 +141,14 @@ Result<void> CompactDecoder::read_base(BitCoder& coder) {
   if (levels_.wedges().size() != header_.base_wedge_count)
     return broken(
         text("base mesh has ", levels_.wedges().size(), " wedges where ", header_.base_wedge_count, " are due"));
+  spend(coder, &CompactSizes::base);
   if (!levels_.code_base_attributes(coder, {})) return broken("an attribute of the base mesh is out of its range");
+  pass_attributes(coder);
   mesh_.deviation.push_back(0);
   mesh_.curvature_error.push_back(0);
   LODESTONE_CHECK(read_errors(coder));
   begin_mesh(base);
+  end_round();
   return check_held_bytes(mesh_, most_bytes_);
 }
 
@@ -155,26 +196,37 @@ void CompactDecoder::add_record(std::size_t i) {
 Result<void> CompactDecoder::read_round(BitCoder& coder) {
   walked_ += levels_.size();
   if (walked_ > most_walked_) return fail(ErrorCode::LimitExceeded, "too many rounds for so small a mesh");
+  start_round();
   if (!levels_.code_patches(coder, nullptr)) return broken("a round has no patches");
   if (!levels_.code_places(coder, {})) return broken("a round's patches do not belong together");
+  spend(coder, &CompactSizes::places);
   if (!levels_.code_wedges(coder, nullptr)) return broken("a round has wedges that do not fit");
+  spend(coder, &CompactSizes::wedges);
   if (!levels_.code_points(coder, {})) return broken("a position lies off the grid");
+  spend(coder, &CompactSizes::positions);
   if (!levels_.code_attributes(coder, {})) return broken("an attribute is out of its range");
+  pass_attributes(coder);
   Index loose = 0;
   if (!levels_.code_loose_count(coder, loose)) return broken("a round has no vertices, or too many");
+  if (rounds_ != nullptr) rounds_->back().loose_count = loose;
   for (; loose > 0; --loose)
     if (LooseVertex read; !levels_.code_loose_vertex(coder, read)) return broken("a loose record does not fit");
+  spend(coder, &CompactSizes::loose);
   if (!levels_.code_attributes(coder, {})) return broken("an attribute is out of its range");
+  pass_attributes(coder);
   for (std::size_t i = 0; i < levels_.vertices().count(); ++i) add_record(i);
   add_attributes();
   mesh_.round_begin.push_back(static_cast<Index>(mesh_.record_count()));
   LODESTONE_CHECK(check_held_bytes(mesh_, most_bytes_));
-  return read_errors(coder);
+  LODESTONE_CHECK(read_errors(coder));
+  end_round();
+  return {};
 }
 
 Result<void> CompactDecoder::read_chunk(const CompactChunkEntry& chunk, std::span<const std::byte> bytes) {
   if (checksum32(bytes) != chunk.checksum) return broken("checksum is wrong");
   BitCoder coder(bytes);
+  bits_at_ = 0;
   if (chunk_count_ == 0) LODESTONE_CHECK(read_base(coder));
   const std::size_t records = mesh_.record_count(), faces = levels_.mesh().face_count();
   const std::size_t wedges = levels_.wedges().size();

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <lodestone/core/result.h>
+#include <lodestone/io/compact_stream.h>
 #include <lodestone/lod/progressive_mesh.h>
 
 #include "codec/bit_coder.h"
@@ -23,6 +25,9 @@ class CompactDecoder {
   CompactDecoder(CompactHeader header, ProgressiveMesh& mesh, std::uint64_t most_bytes = kNoLimit);
 
   const CompactHeader& header() const { return header_; }
+  /// Has all rounds from now on, the base mesh as one, appended to a list, which outlives the decoder.
+  void count_rounds(std::vector<CompactRound>& rounds);
+
   /// How many chunks have been added.
   std::size_t chunk_count() const { return chunk_count_; }
   /// Whether all chunks have been added.
@@ -38,6 +43,10 @@ class CompactDecoder {
   Result<void> read_base(BitCoder& coder);
   Result<void> read_round(BitCoder& coder);
   Result<void> read_errors(BitCoder& coder);
+  void start_round();
+  void spend(const BitCoder& coder, double CompactSizes::*part);
+  void pass_attributes(const BitCoder& coder);
+  void end_round();
   void add_position(const Vec3i& position);
   void add_attributes();
   void begin_mesh(const BaseMesh& base);
@@ -56,6 +65,8 @@ class CompactDecoder {
   std::vector<Index> freed_;        // slots of the coarse faces of a record
   ProgressiveMesh& mesh_;
   std::uint64_t most_bytes_;
+  std::vector<CompactRound>* rounds_ = nullptr;  // counted, unless null
+  double bits_at_ = 0;                           // where the last part of the chunk ended
 };
 
 }  // namespace lodestone::detail

@@ -1,5 +1,6 @@
 #include <lodestone/io/compact_stream.h>
 
+#include <numeric>
 #include <utility>
 
 #include <lodestone/core/detail/text.h>
@@ -17,7 +18,15 @@ Result<std::vector<CompactChunk>> read_compact_chunks(std::span<const std::byte>
   return detail::compact_chunks(header);
 }
 
-Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) {
+double CompactSizes::sum() const {
+  return std::accumulate(attributes.begin(), attributes.end(),
+                         header + base + places + positions + wedges + loose + errors);
+}
+
+namespace {
+
+/// Decodes a stream; its rounds are counted where there is a list for them.
+Result<ProgressiveMesh> decode(std::span<const std::byte> bytes, std::vector<CompactRound>* rounds) {
   const auto in_stream = [](const Error& error, std::uint64_t offset) {
     return fail(error.code, "compact stream: " + error.message, error.byte_offset.value_or(offset));
   };
@@ -26,6 +35,7 @@ Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) {
   std::uint64_t offset = header->header_bytes;
   ProgressiveMesh mesh;
   detail::CompactDecoder decoder(std::move(*header), mesh);
+  if (rounds != nullptr) decoder.count_rounds(*rounds);
   for (std::size_t i = 0; !decoder.done(); ++i) {
     const std::uint64_t length = decoder.header().chunks[i].byte_length, room = bytes.size() - offset;
     if (room == 0 && i > 0) return mesh;  // a prefix: the level so far is complete
@@ -40,6 +50,28 @@ Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) {
   if (offset < bytes.size())
     return in_stream({ErrorCode::Malformed, text(bytes.size() - offset, " bytes follow its end"), {}}, offset);
   return mesh;
+}
+
+void add(const CompactSizes& more, CompactSizes& sizes) {
+  for (const auto part : {&CompactSizes::base, &CompactSizes::places, &CompactSizes::positions, &CompactSizes::wedges,
+                          &CompactSizes::loose, &CompactSizes::errors})
+    sizes.*part += more.*part;
+  for (std::size_t a = 0; a < sizes.attributes.size(); ++a) sizes.attributes[a] += more.attributes[a];
+}
+
+}  // namespace
+
+Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) { return decode(bytes, nullptr); }
+
+Result<CompactParts> measure_compact(std::span<const std::byte> bytes) {
+  CompactParts parts;
+  LODESTONE_TRY(const ProgressiveMesh mesh, decode(bytes, &parts.rounds));
+  for (const Attribute& attribute : mesh.attributes) parts.attributes.push_back(attribute.name);
+  CompactSizes& sizes = parts.sizes;
+  sizes.attributes.assign(mesh.attributes.size(), 0);
+  for (const CompactRound& round : parts.rounds) add(round.sizes, sizes);
+  sizes.header = 8 * static_cast<double>(bytes.size()) - sizes.sum();
+  return parts;
 }
 
 }  // namespace lodestone

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include <lodestone/core/detail/cancelled.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -19,6 +20,9 @@ namespace lodestone {
 namespace {
 
 using namespace detail;
+
+// How much of a round is done once its places, or its positions, are coded.
+constexpr double kPlacesShare = 0.4, kPositionsShare = 0.7;
 
 // A chunk ends with the first round after so many bytes, or as many as came before it.
 constexpr std::size_t kLeastChunkBytes = 1024;
@@ -120,6 +124,31 @@ LevelLimits limits_of(const ProgressiveMesh& mesh, const CompactOptions& options
   return limits;
 }
 
+/// Tells of an encoding that it goes on.
+class EncodingListener final : public WorkListener {
+ public:
+  EncodingListener(const Progress& progress, std::size_t record_count)
+      : progress_(progress), record_count_(static_cast<double>(std::max<std::size_t>(record_count, 1))) {}
+
+  bool step() override { return --left_ > 0 || tell(); }
+  /// Says that so many records are done.
+  bool reach(double records) const { return progress_.reach(records / record_count_); }
+  bool is_cancelled() const { return progress_.is_cancelled(); }
+
+ private:
+  static constexpr int kSteps = 256;  // between two words: about a millisecond
+
+  bool tell() {
+    const bool goes_on = progress_.add(0);
+    left_ = goes_on ? kSteps : 1;
+    return goes_on;
+  }
+
+  Progress progress_;
+  double record_count_;
+  int left_ = kSteps;
+};
+
 /// Encodes a progressive mesh. Pre: the checks found nothing.
 class CompactEncoder {
  public:
@@ -128,7 +157,10 @@ class CompactEncoder {
         specs_(choose_specs(mesh.attributes, options)),
         levels_(limits_of(mesh, options), specs_),
         coded_(mesh),
-        planner_(mesh, coded_, levels_.mesh()) {
+        planner_(mesh, coded_, levels_.mesh()),
+        listener_(options.progress, mesh.record_count()) {
+    coder_.set_listener(&listener_);
+    levels_.count_attributes();
     header_.grid_bits = options.grid_bits;
     header_.grid = grid_of(mesh, options);
     header_.attributes = specs_;
@@ -140,9 +172,13 @@ class CompactEncoder {
     result_.sizes.attributes.assign(specs_.size(), 0);
   }
 
+  CompactEncoder(const CompactEncoder&) = delete;
+  CompactEncoder& operator=(const CompactEncoder&) = delete;
+
   Result<CompactStream> run();
 
  private:
+  Result<void> write_rounds();
   Vec3i grid_position(Index vertex) const;
   float widened(float deviation) const;
   Result<void> write_base();
@@ -169,6 +205,7 @@ class CompactEncoder {
   LevelCoder levels_;
   CodedNumbers coded_;
   RoundPlanner planner_;
+  EncodingListener listener_;
   CompactHeader header_;
   ErrorCoder errors_;
   BitCoder coder_;
@@ -424,12 +461,14 @@ Result<void> CompactEncoder::write_loose(Index record) {
 Result<void> CompactEncoder::write_round(Index first, Index end) {
   const auto wrong = [&] { return unsupported(text("the round of record ", first, " does not fit its level")); };
   const std::size_t faces = levels_.mesh().face_count(), wedges = levels_.wedges().size();
-  planner_.plan(first, end);
+  const auto reach = [&](double share) { return listener_.reach(first + share * (end - first)); };
+  planner_.plan(first, end, listener_);
   if (!levels_.code_patches(coder_, &planner_.patches())) return wrong();
   number_stars();
   join_stars();
   if (!levels_.code_places(coder_, joins_)) return wrong();
   spend(result_.sizes.places);
+  if (!reach(kPlacesShare)) return cancelled();
   plan_wedges();
   if (!levels_.code_wedges(coder_, &wedge_plan_)) return wrong();
   spend(result_.sizes.wedges);
@@ -438,6 +477,7 @@ Result<void> CompactEncoder::write_round(Index first, Index end) {
     positions.push_back(grid_position(mesh_.base_vertex_count + star_records_[levels_.vertices().stars_of(i).front()]));
   if (!levels_.code_points(coder_, positions)) return wrong();
   spend(result_.sizes.positions);
+  if (!reach(kPositionsShare)) return cancelled();
   if (!write_attributes(false)) return wrong();
   auto loose = static_cast<Index>(planner_.loose().size());
   result_.loose_count += loose;
@@ -451,12 +491,14 @@ Result<void> CompactEncoder::write_round(Index first, Index end) {
   chunk_.face_count += static_cast<Index>(levels_.mesh().face_count() - faces);
   chunk_.wedge_count += static_cast<Index>(levels_.wedges().size() - wedges);
   ++result_.round_count;
+  if (!reach(1)) return cancelled();
   return {};
 }
 
 void CompactEncoder::end_chunk() {
   std::vector<std::byte> bytes = coder_.finish();
   coder_ = BitCoder();
+  coder_.set_listener(&listener_);
   bits_at_ = coder_.bits();
   const std::uint64_t least = header_.least_bytes(chunk_, header_.chunks.empty());
   if (bytes.size() < least) bytes.resize(least);  // zeros follow anyway
@@ -468,7 +510,7 @@ void CompactEncoder::end_chunk() {
   append_bytes(body_, bytes);
 }
 
-Result<CompactStream> CompactEncoder::run() {
+Result<void> CompactEncoder::write_rounds() {
   LODESTONE_CHECK(write_base());
   const std::uint64_t most_walked = kMostWalked * (full_face_count(mesh_) + mesh_.positions.size() +
                                                    mesh_.wedge_vertex.size() + mesh_.groups.size() + 1);
@@ -487,6 +529,14 @@ Result<CompactStream> CompactEncoder::run() {
   }
   if (!levels_.may_end_chunk()) return beyond("polygons of records have too many corners");
   end_chunk();
+  return {};
+}
+
+Result<CompactStream> CompactEncoder::run() {
+  if (const auto written = write_rounds(); !written) {
+    if (listener_.is_cancelled()) return cancelled();  // as whatever it looked like where it stopped
+    return tl::unexpected(written.error());
+  }
   result_.bytes = write_compact_header(header_);
   append_bytes(result_.bytes, body_);
   // What is left that a reader would refuse, as errors that are not finite.
@@ -494,9 +544,7 @@ Result<CompactStream> CompactEncoder::run() {
     return fail(ErrorCode::InvalidArgument, "compact stream: " + read.error().message);
   CompactSizes& s = result_.sizes;
   s.attributes = levels_.attributes().bits;
-  s.header =
-      8 * static_cast<double>(result_.bytes.size()) - s.base - s.places - s.positions - s.wedges - s.loose - s.errors;
-  for (const double bits : s.attributes) s.header -= bits;
+  s.header = 8 * static_cast<double>(result_.bytes.size()) - s.sum();
   result_.vertex_numbers = std::move(coded_.vertex);
   result_.wedge_numbers = std::move(coded_.wedge);
   return std::move(result_);

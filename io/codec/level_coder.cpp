@@ -52,7 +52,7 @@ bool LevelCoder::code_flag(BitCoder& coder, std::uint32_t which, bool is) {
 bool LevelCoder::code_base(BitCoder& coder, BaseMesh& base) {
   if (!base_coder_.code(coder, base, limits_.most_wedges, wedges_)) return false;
   for (Vec3i& position : base.positions)
-    if (!points_.code_base(coder, position)) return false;
+    if (!points_.code_base(coder, position) || !coder.goes_on()) return false;
   positions_ = base.positions;
   std::vector<Index> corners = base.corners, wedges;
   for (std::size_t c = 0; c < corners.size(); ++c) wedges.push_back(wedges_.begin(corners[c]) + base.wedges[c]);
@@ -204,7 +204,7 @@ bool LevelCoder::code_wedges(BitCoder& coder, const WedgePlan* plan) {
     }
     if (wedges_.size() > limits_.most_wedges) return false;
     if (any_extra && !code_extra(coder, plan != nullptr ? plan->extra[v] : 0)) return false;
-    if (!end_vertex()) return false;
+    if (!end_vertex() || !coder.goes_on()) return false;
   }
   return true;
 }
@@ -221,6 +221,7 @@ bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
     const Index star = star_of(i);
     Vec3i position = given.empty() ? Vec3i{} : given[i];
     if (!points_.code(coder, mesh_, stars_.star(star), stars_.stars[star].closed, positions_, position)) return false;
+    if (!coder.goes_on()) return false;
     positions_[first + i] = position;
   }
   return true;
@@ -249,7 +250,7 @@ bool LevelCoder::code_loose_vertex(BitCoder& coder, LooseVertex& vertex) {
   positions_.push_back(vertex.position);
   vertices_.stars.push_back(static_cast<Index>(stars_.stars.size() - 1));
   vertices_.star_end.push_back(static_cast<Index>(vertices_.stars.size()));
-  return true;
+  return coder.goes_on();
 }
 
 bool LevelCoder::code_loose_count(BitCoder& coder, Index& count) {

@@ -108,6 +108,8 @@ class LevelCoder {
   const NewVertices& vertices() const { return vertices_; }
   const SectorList& sectors() const { return sectors_; }
   const AttributeCoder& attributes() const { return attributes_; }
+  /// Has attributes counted by what they take.
+  void count_attributes() { attributes_.counts = true; }
 
   /// Codes the base mesh; a reader gives one with arrays of the right lengths. False where what is read is none.
   bool code_base(BitCoder& coder, BaseMesh& base);

@@ -301,6 +301,7 @@ void PatchCoder::walk(BitCoder& coder, const PatchPlan* plan, Index count, Round
     for (std::size_t at = 0; at < queue_.size() && patches.patches.size() < count; ++at) {
       const Index face = queue_[at];
       if (state_[face] != kOpen) continue;
+      if (!coder.goes_on()) return;
       if (code_face(coder, face, plan != nullptr && plan->patch_of[face] != kNoIndex)) {
         grow(coder, face, plan, patches);
         continue;

@@ -57,7 +57,7 @@ Index RoundPlanner::take_round(Index first) {
   return record;
 }
 
-void RoundPlanner::plan(Index first, Index end) {
+void RoundPlanner::plan(Index first, Index end, WorkListener& listener) {
   plan_.patch_of.assign(level_.face_count(), kNoIndex);
   plan_.is_ear.assign(3 * level_.face_count(), 0);
   plan_.closing_edge.clear();
@@ -68,7 +68,7 @@ void RoundPlanner::plan(Index first, Index end) {
   ear_claim_.clear();
   has_borders_ = false;
   owner_.assign(level_.face_count(), 0);
-  for (Index record = first; record < end; ++record)
+  for (Index record = first; record < end && listener.step(); ++record)
     if (is_loose(record) || !plan_record(record)) loose_.push_back(record);
 }
 

@@ -35,8 +35,8 @@ class RoundPlanner {
   /// Takes records, from one on, while none needs what another of them makes; pieces that vanish are let pass. Returns
   /// the first of the next round.
   Index take_round(Index first);
-  /// Plans a round.
-  void plan(Index first, Index end);
+  /// Plans a round. The listener hears of every record and may end it early.
+  void plan(Index first, Index end, WorkListener& listener);
 
   const PatchPlan& patches() const { return plan_; }
   /// Records that are no patches and ears, in order.

@@ -324,10 +324,11 @@ std::vector<CompactOptions> compact_options(const Scene& scene, const AssetOptio
   };
   std::vector<CompactOptions> compact;
   for (const detail::QuantizationGrid& grid : fit()) {
-    compact.push_back({grid.is_exact() ? kMostBits : std::clamp(grid.bits, kLeastBits, kMostBits), {}});
-    compact.back().normal_bits = std::min(options.normal_bits, kMostOtherBits);
-    compact.back().texture_bits = std::clamp(options.texcoord_bits, 2, kMostOtherBits);
-    compact.back().other_bits = std::clamp(std::max(options.generic_bits, detail::kMinWeightBits), 2, kMostOtherBits);
+    CompactOptions& mesh = compact.emplace_back();
+    mesh.grid_bits = grid.is_exact() ? kMostBits : std::clamp(grid.bits, kLeastBits, kMostBits);
+    mesh.normal_bits = std::min(options.normal_bits, kMostOtherBits);
+    mesh.texture_bits = std::clamp(options.texcoord_bits, 2, kMostOtherBits);
+    mesh.other_bits = std::clamp(std::max(options.generic_bits, detail::kMinWeightBits), 2, kMostOtherBits);
   }
   plain.position_bits = kMostBits;  // boxes do not hang on it
   const std::vector<detail::QuantizationGrid> boxes = fit();

@@ -369,6 +369,105 @@ TEST_CASE("the sizes of a compact stream's parts add up") {
   CHECK(std::abs(sum - 8.0 * static_cast<double>(stream.bytes.size())) < 1e-6);
 }
 
+/// All parts of sizes, one after the other.
+std::vector<double> all_parts(const CompactSizes& s) {
+  std::vector<double> parts = {s.header, s.base, s.places, s.positions, s.wedges, s.loose, s.errors};
+  parts.insert(parts.end(), s.attributes.begin(), s.attributes.end());
+  return parts;
+}
+
+TEST_CASE("what a reader finds the parts of a compact stream to take is what its writer spent on them") {
+  for (const ProgressiveMesh& mesh : {progressive(skinned_cylinder(12, 9)), progressive(seam_sphere(16, 12)),
+                                      progressive(terrain(40, 3)), progressive(icosphere(2, 0, 1), 0)}) {
+    const CompactStream stream = encoded(mesh);
+    const auto parts = measure_compact(stream.bytes);
+    REQUIRE(parts);
+    const std::vector<double> written = all_parts(stream.sizes), read = all_parts(parts->sizes);
+    REQUIRE(read.size() == written.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      CAPTURE(i);
+      CHECK(std::abs(read[i] - written[i]) < 1e-6);
+    }
+    CHECK(std::abs(parts->sizes.sum() - 8.0 * static_cast<double>(stream.bytes.size())) < 1e-6);
+    REQUIRE(parts->attributes.size() == mesh.attributes.size());
+    for (std::size_t a = 0; a < mesh.attributes.size(); ++a) CHECK(parts->attributes[a] == mesh.attributes[a].name);
+  }
+}
+
+TEST_CASE("the rounds of a compact stream fill its chunks, and lead to the levels that they say") {
+  const ProgressiveMesh mesh = progressive(seam_sphere(48, 40));
+  const CompactStream stream = encoded(mesh);
+  const auto chunks = read_compact_chunks(stream.bytes);
+  const auto parts = measure_compact(stream.bytes);
+  REQUIRE(chunks);
+  REQUIRE(parts);
+  REQUIRE(chunks->size() > 2);
+  CHECK(parts->rounds.size() == stream.round_count + 1);
+  CHECK(parts->rounds.front().record_count == 0);
+  CHECK(parts->rounds.front().sizes.base > 0);
+  std::vector<double> bits(chunks->size());
+  std::vector<std::size_t> records(chunks->size());
+  std::size_t loose = 0;
+  const ProgressiveMesh coded = decoded(stream.bytes);
+  std::size_t position = 0;
+  for (const CompactRound& round : parts->rounds) {
+    REQUIRE(round.chunk < chunks->size());
+    CHECK(round.sizes.header == 0);
+    bits[round.chunk] += round.sizes.sum();
+    records[round.chunk] += round.record_count;
+    loose += round.loose_count;
+    position += round.record_count;
+    CHECK(round.vertex_count == coded.base_vertex_count + position);
+    CHECK(round.deviation == coded.deviation[position]);
+    CHECK(round.face_count == extract_level(coded, static_cast<Index>(position)).face_count());
+  }
+  CHECK(position == coded.record_count());
+  CHECK(loose == stream.loose_count);
+  // A chunk ends within its last byte but two, unless it is filled up.
+  for (std::size_t i = 0; i < chunks->size(); ++i) {
+    CHECK(records[i] == (*chunks)[i].record_count);
+    const double left = 8 * static_cast<double>((*chunks)[i].byte_length) - bits[i];
+    CHECK(left > -16);
+    CHECK(left < 16);
+  }
+  const std::uint64_t end = chunks->front().byte_offset + chunks->front().byte_length;
+  const auto first = measure_compact(std::span(stream.bytes).first(end));
+  REQUIRE(first);
+  CHECK(std::abs(first->sizes.sum() - 8.0 * static_cast<double>(end)) < 1e-6);
+  CHECK(first->rounds.back().chunk == 0);
+  CHECK(!measure_compact(std::span(stream.bytes).first(end - 1)));
+}
+
+TEST_CASE("an encoding that is cancelled at any call makes no other, and says so") {
+  const ProgressiveMesh mesh = progressive(seam_sphere(48, 40));
+  const std::vector<std::byte> whole = encoded(mesh).bytes;
+  bool ends = false;
+  for (int last = 1; !ends; last = 2 * last + 1) {
+    CAPTURE(last);
+    int calls = 0;
+    double done = 0;
+    CompactOptions options;
+    options.grid_bits = 12;
+    options.progress = [&](double now) {
+      CHECK(now >= done);
+      CHECK(now <= 1);
+      done = now;
+      return ++calls < last;
+    };
+    const auto stream = encode_compact(mesh, options);
+    CHECK(calls <= last);
+    ends = calls < last;
+    REQUIRE(stream.has_value() == ends);
+    if (!ends) {
+      CHECK(stream.error().code == ErrorCode::Cancelled);
+      continue;
+    }
+    CHECK(stream->bytes == whole);
+    CHECK(done == 1);
+    CHECK(static_cast<std::size_t>(calls) > mesh.record_count() / 100);  // well within a round, too
+  }
+}
+
 TEST_CASE("a compact stream depends on nothing but the mesh") {
   const Mesh mesh = mesh_of(icosphere(3, 0.05, 1));
   const std::vector<std::byte> bytes = encoded(progressive(mesh, 1.5)).bytes;

@@ -41,12 +41,14 @@ BuildOptions options_of(FileLayout layout) {
 
 TEST_CASE("a build says how far it is: each stage from 0 to 1, never back") {
   const Scene scene = ball_scene();
-  for (const FileLayout layout : {FileLayout::OneFile, FileLayout::FilePerLevel}) {
+  for (const FileLayout layout : {FileLayout::OneFile, FileLayout::FilePerLevel, FileLayout::Refined}) {
     Watcher watcher;
-    const auto built = build_asset(scene, options_of(layout), watcher);
+    BuildOptions options = options_of(layout);
+    if (layout == FileLayout::Refined) options.targets = ratio_targets(0.1, 1);
+    const auto built = build_asset(scene, options, watcher);
     REQUIRE(built);
     CHECK(built->met);
-    CHECK(built->files.size() == (layout == FileLayout::OneFile ? 1 : built->levels.size()));
+    CHECK(built->files.size() == (layout == FileLayout::FilePerLevel ? built->levels.size() : 1));
     REQUIRE(watcher.said.size() == 4);
     for (const auto& [stage, shares] : watcher.said) {
       CAPTURE(static_cast<int>(stage));
@@ -59,23 +61,38 @@ TEST_CASE("a build says how far it is: each stage from 0 to 1, never back") {
 
 TEST_CASE("a build can be cancelled at any of its calls, and makes no other then") {
   const Scene scene = ball_scene();
-  Watcher whole;
-  REQUIRE(build_asset(scene, {}, whole));
   Random random(12);
-  std::vector<std::size_t> chosen = {1, 2, whole.calls};
-  while (chosen.size() < (kReduced ? 8 : 30)) chosen.push_back(1 + random.below(whole.calls));
-  for (const std::size_t call : chosen)
-    for (const std::size_t threads : {1, 3}) {
-      CAPTURE(call, whole.calls, threads);
-      Watcher watcher;
-      watcher.last_call = call;
-      with_threads(threads, [&] {
-        const auto built = build_asset(scene, {}, watcher);
-        REQUIRE_FALSE(built);
-        CHECK(built.error().code == ErrorCode::Cancelled);
-      });
-      CHECK(watcher.calls == call);
-    }
+  BuildOptions refined = options_of(FileLayout::Refined);
+  refined.targets = ratio_targets(0.1, 1);
+  for (const BuildOptions& options : {BuildOptions{}, refined}) {
+    Watcher whole;
+    REQUIRE(build_asset(scene, options, whole));
+    std::vector<std::size_t> chosen = {1, 2, whole.calls};
+    while (chosen.size() < (kReduced ? 8 : 30)) chosen.push_back(1 + random.below(whole.calls));
+    for (const std::size_t call : chosen)
+      for (const std::size_t threads : {1, 3}) {
+        CAPTURE(call, whole.calls, threads);
+        Watcher watcher;
+        watcher.last_call = call;
+        with_threads(threads, [&] {
+          const auto built = build_asset(scene, options, watcher);
+          REQUIRE_FALSE(built);
+          CHECK(built.error().code == ErrorCode::Cancelled);
+        });
+        CHECK(watcher.calls == call);
+      }
+  }
+}
+
+TEST_CASE("a stream is heard of while it is encoded") {
+  const Scene scene = Scene::from_mesh({assemble(icosphere(4, 0.02, 7))->mesh, {}, {}, {}, {}}, "ball").value();
+  BuildOptions options = options_of(FileLayout::Refined);
+  options.targets = ratio_targets(0.1, 1);
+  Watcher watcher;
+  REQUIRE(build_asset(scene, options, watcher));
+  std::size_t count = 0;  // of calls before files are written
+  for (const double done : watcher.said[BuildStage::Writing]) count += done < 0.3 ? 1 : 0;
+  CHECK(count > 50);
 }
 
 TEST_CASE("a build is heard of within a mesh: no stage but writing goes far between two calls") {

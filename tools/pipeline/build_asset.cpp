@@ -109,8 +109,9 @@ Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const Compact
     options.progress = progress;
     return encode_stream(mesh, options);
   }
-  LODESTONE_TRY(CompactStream stream, encode_compact(mesh, *compact));
-  if (!progress.reach(1)) return cancelled();
+  CompactOptions options = *compact;
+  options.progress = progress;
+  LODESTONE_TRY(CompactStream stream, encode_compact(mesh, options));
   return std::move(stream.bytes);
 }
 

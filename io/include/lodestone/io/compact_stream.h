@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include <lodestone/core/progress.h>
 #include <lodestone/core/result.h>
 #include <lodestone/core/vec.h>
 #include <lodestone/lod/progressive_mesh.h>
@@ -30,9 +32,10 @@ struct CompactOptions {
   int texture_bits = 12;            ///< of texture coordinates, over their box, 2 to 24
   int weight_bits = 8;              ///< of joints' weights, 2 to 24; those of a wedge add up to 1
   int other_bits = 12;              ///< of other floats, over theirs, 2 to 24; integers stay as they are
+  Progress progress;
 };
 
-/// What the parts of a compact stream take, in bits.
+/// What the parts of a compact stream, or of some of it, take, in bits.
 struct CompactSizes {
   double header = 0;     ///< and what chunks are rounded up by
   double base = 0;       ///< the base mesh
@@ -42,6 +45,9 @@ struct CompactSizes {
   double loose = 0;      ///< what is told face by face, with its positions
   double errors = 0;
   std::vector<double> attributes;  ///< by attribute
+
+  /// All together.
+  double sum() const;
 };
 
 /// A progressive mesh as a compact stream.
@@ -77,12 +83,34 @@ struct CompactChunk {
 ///
 /// Deterministic. Errors: InvalidArgument for options, and for positions outside the grid by more than half a step;
 /// LimitExceeded where the mesh has more of anything than a stream can hold; Unsupported where records do not fit the
-/// faces that they replace.
+/// faces that they replace; Cancelled.
 Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options = {});
 
 /// Reads where the chunks lie and what they lead to; they need not be there yet. Errors: Malformed, Unsupported
 /// (another version), with offsets.
 Result<std::vector<CompactChunk>> read_compact_chunks(std::span<const std::byte> bytes);
+
+/// A round of a compact stream, and the level that it leads to.
+struct CompactRound {
+  std::size_t chunk = 0;           ///< that it is in
+  std::size_t record_count = 0;    ///< 0 of the first round, which is the base mesh
+  std::size_t loose_count = 0;     ///< of them: see CompactStream
+  std::uint64_t vertex_count = 0;  ///< of the level
+  std::uint64_t face_count = 0;    ///< of the level
+  float deviation = 0;             ///< bound of the level, mesh units
+  CompactSizes sizes;              ///< of the round; none for a header
+};
+
+/// What a compact stream spends its bytes on.
+struct CompactParts {
+  CompactSizes sizes;  ///< of the bytes given: 8 bits of each, all in all
+  std::vector<std::string> attributes;
+  std::vector<CompactRound> rounds;
+};
+
+/// Decodes a stream as `decode_compact` does, whole or its first chunks, and says what its parts take. Errors: the
+/// same.
+Result<CompactParts> measure_compact(std::span<const std::byte> bytes);
 
 /// Decodes a stream, or its first chunks where `bytes` ends early on a chunk's boundary. The result is valid whatever
 /// the bytes, and the same on every machine. Errors: Malformed, LimitExceeded, Unsupported, with offsets.
