@@ -139,6 +139,18 @@ Result<std::optional<StreamFile>> read_stream_file(const std::filesystem::path& 
   return StreamFile{std::move(reader).take_mesh(), std::move(chunks), bytes.size()};
 }
 
+Result<std::vector<Asset::Stream>> read_streams(const std::filesystem::path& path) {
+  LODESTONE_TRY(std::vector<std::byte> bytes, read_bytes(path));
+  if (is_stream(bytes)) return std::vector<Asset::Stream>{{"", std::move(bytes)}};
+  if (!may_be_gltf(bytes))
+    return tl::unexpected(not_streamed(path, ErrorCode::Unsupported, "it is neither .glb nor .gltf, nor a stream"));
+  auto streams = open_asset(path, bytes).and_then([](const Asset& asset) { return asset.streams(); });
+  if (is_standard_stream(path)) streams = std::move(streams).map_error(of_standard_input);
+  if (streams && streams->empty())
+    return tl::unexpected(not_streamed(path, ErrorCode::Unsupported, "none of its meshes has one"));
+  return streams;
+}
+
 Error not_streamed(const std::filesystem::path& path, ErrorCode code, const std::string& why) {
   return {code, quoted(path) + ": not a file with a removal stream, as lodestone build makes one: " + why,
           std::nullopt};

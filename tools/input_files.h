@@ -55,6 +55,10 @@ Result<Scene> read_levels(const std::filesystem::path& path, std::size_t level);
 /// of StreamReader; a file that ends early is what has come so far.
 Result<std::optional<StreamFile>> read_stream_file(const std::filesystem::path& path);
 
+/// Reads the streams of a file, as they are: one that is a stream alone, whose mesh has no name, or those of a glTF.
+/// Errors: as not_streamed says it for a file without any.
+Result<std::vector<Asset::Stream>> read_streams(const std::filesystem::path& path);
+
 /// Returns the error of a file that has no stream where one is needed, whatever it is.
 Error not_streamed(const std::filesystem::path& path, ErrorCode code, const std::string& why);
 

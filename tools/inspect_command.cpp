@@ -10,19 +10,16 @@
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/asset.h>
-#include <lodestone/io/compact_stream.h>
 #include <lodestone/io/scene.h>
-#include <lodestone/io/stream_format.h>
 
 #include "input_files.h"
 #include "json_text.h"
 #include "messages.h"
+#include "stream_listing.h"
 #include "text_table.h"
 
 namespace lodestone::tool {
 namespace {
-
-constexpr int kInspectSchemaVersion = 1;
 
 struct KindName {
   VertexKind kind;
@@ -36,8 +33,6 @@ constexpr std::array<KindName, 6> kKindNames = {{{VertexKind::Interior, "interio
                                                  {VertexKind::Isolated, "isolated"}}};
 using KindCounts = std::array<std::size_t, kKindNames.size()>;
 
-std::string text_of(std::uint64_t number) { return std::to_string(number); }
-
 // A multi-LOD file: its levels, its stream, and what is left.
 
 Json level_json(const Asset::Level& level) {
@@ -50,28 +45,6 @@ Json level_json(const Asset::Level& level) {
       {"curvature_error", level.curvature_error},
       {"screen_coverage", level.screen_coverage}};
 }
-
-Json chunk_json(const StreamChunk& chunk) {
-  return {{"byte_offset", chunk.byte_offset},        {"bytes", chunk.byte_length},
-          {"decoded_bytes", chunk.decoded_bytes},    {"first_record", chunk.record_begin},
-          {"records", chunk.record_count},           {"faces", chunk.face_count},
-          {"vertices", chunk.vertex_count},          {"deviation_bound", chunk.deviation},
-          {"curvature_error", chunk.curvature_error}};
-}
-
-Json stream_json(const StreamDirectory& directory) {
-  Json chunks = Json::array();
-  for (const StreamChunk& chunk : directory.chunks) chunks.push_back(chunk_json(chunk));
-  return {{"version", text_of(directory.version_major) + "." + text_of(directory.version_minor)},
-          {"bytes", directory.total_bytes},
-          {"chunks", chunks}};
-}
-
-/// A stream's directory and the name of its mesh.
-struct ListedStream {
-  std::string mesh;
-  StreamDirectory directory;
-};
 
 std::uint64_t stream_bytes(const DecodedAsset& asset) {
   std::uint64_t bytes = 0;
@@ -128,21 +101,6 @@ void print_levels(const DecodedAsset& asset) {
   table.print();
 }
 
-void print_stream(const ListedStream& stream) {
-  const StreamDirectory& directory = stream.directory;
-  std::printf("\nremoval stream%s, version %d.%d, %llu bytes\n",
-              stream.mesh.empty() ? "" : (" of " + stream.mesh).c_str(), directory.version_major,
-              directory.version_minor, static_cast<unsigned long long>(directory.total_bytes));
-  TextTable table({"chunk", "records", "faces", "vertices", "deviation", "epsilon", "bytes", "decoded"});
-  for (std::size_t i = 0; i < directory.chunks.size(); ++i) {
-    const StreamChunk& chunk = directory.chunks[i];
-    table.add({text_of(i), text_of(chunk.record_count), text_of(chunk.face_count), text_of(chunk.vertex_count),
-               number_text(chunk.deviation), number_text(chunk.curvature_error), text_of(chunk.byte_length),
-               text_of(chunk.decoded_bytes)});
-  }
-  table.print();
-}
-
 void print_asset(const std::string& path, const DecodedAsset& asset, std::span<const ListedStream> streams) {
   std::printf("%s: %llu bytes, %llu of them neither level nor stream; diagonal %s\n", path.c_str(),
               static_cast<unsigned long long>(asset.total_bytes), static_cast<unsigned long long>(other_bytes(asset)),
@@ -151,25 +109,11 @@ void print_asset(const std::string& path, const DecodedAsset& asset, std::span<c
   for (const ListedStream& stream : streams) print_stream(stream);
 }
 
-/// Of a compact stream what there is of it: its chunks are not compressed by themselves, and have no curvature errors.
-Result<StreamDirectory> directory_of(std::span<const std::byte> stream) {
-  const std::uint16_t version = stream_version(stream);
-  if (version < kCompactStreamVersion) return read_stream_directory(stream);
-  LODESTONE_TRY(const std::vector<CompactChunk> chunks, read_compact_chunks(stream));
-  StreamDirectory directory;
-  directory.version_major = version;
-  directory.total_bytes = stream.size();
-  for (const CompactChunk& chunk : chunks)
-    directory.chunks.push_back({chunk.byte_offset, chunk.byte_length, chunk.byte_length, 0, chunk.record_begin,
-                                chunk.record_count, chunk.face_count, chunk.vertex_count, chunk.deviation, 0});
-  return directory;
-}
-
 Result<Outcome> inspect_asset(const std::string& path, const DecodedAsset& asset, bool json) {
   std::vector<ListedStream> streams;
   for (const Asset::Stream& stream : asset.streams) {
     LODESTONE_TRY(StreamDirectory directory, directory_of(stream.bytes));
-    streams.push_back({stream.mesh, std::move(directory)});
+    streams.push_back({stream.mesh, std::move(directory), {}});
   }
   if (json) {
     std::fputs(json_text(asset_json(path, asset, streams)).c_str(), stdout);
@@ -310,6 +254,23 @@ Result<Outcome> inspect_stream(const std::string& path, const Scene& scene, cons
   return Outcome::Done;
 }
 
+/// Of any file with streams: what they spend their bytes on.
+Result<Outcome> inspect_parts(const std::filesystem::path& path, bool json) {
+  LODESTONE_TRY(const std::vector<Asset::Stream> streams, read_streams(path));
+  std::vector<ListedStream> listed;
+  for (const Asset::Stream& stream : streams) {
+    auto one = list_stream(stream);
+    if (!one) return fail(one.error().code, quoted(path) + ": " + one.error().message, one.error().byte_offset);
+    listed.push_back(std::move(*one));
+  }
+  if (json) {
+    std::fputs(json_text(parts_json(path.string(), listed)).c_str(), stdout);
+  } else {
+    print_parts(path.string(), listed);
+  }
+  return Outcome::Done;
+}
+
 Result<Outcome> inspect_scene(const std::string& path, const Scene& scene, std::uint64_t bytes, bool json) {
   LODESTONE_TRY(const Inventory inventory, take_inventory(scene, bytes));
   if (json) {
@@ -326,15 +287,21 @@ void InspectCommand::add_to(CLI::App& app) {
   app.add_option("X,-i,--input", input, "A file that lodestone build wrote, or any mesh file; - for standard input")
       ->required()
       ->type_name("FILE");
+  app.add_flag("--stream", stream,
+               "Show what the streams of the file spend their bytes on, part by part, round by round");
   app.add_flag("--json", json, "Print JSON");
-  app.footer("Example:\n  lodestone inspect bunny.glb");
+  app.footer(
+      "Examples:\n"
+      "  lodestone inspect bunny.glb\n"
+      "  lodestone inspect bunny.lods --stream");
 }
 
 Result<Outcome> InspectCommand::run() const {
+  if (stream) return inspect_parts(input, json);
   LODESTONE_TRY(const AssetOrScene file, read_asset_or_scene(input));
   if (file.asset) return inspect_asset(input.string(), *file.asset, json);
-  LODESTONE_TRY(const std::optional<StreamFile> stream, read_stream_file(input));
-  if (stream) return inspect_stream(input.string(), *file.scene, *stream, json);
+  LODESTONE_TRY(const std::optional<StreamFile> alone, read_stream_file(input));
+  if (alone) return inspect_stream(input.string(), *file.scene, *alone, json);
   return inspect_scene(input.string(), *file.scene, file.bytes, json);
 }
 

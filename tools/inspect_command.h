@@ -15,6 +15,7 @@ namespace lodestone::tool {
 /// `lodestone inspect`: what a mesh file or a multi-LOD .glb holds.
 struct InspectCommand {
   std::filesystem::path input;
+  bool stream = false;
   bool json = false;
 
   void add_to(CLI::App& app);

@@ -5,9 +5,11 @@
 #include <lodestone/core/assemble.h>
 #include <lodestone/io/file.h>
 #include <lodestone/io/read_mesh.h>
+#include <lodestone/io/stream_format.h>
 #include <lodestone/io/stream_reader.h>
 #include <lodestone/io/write_mesh.h>
 #include <lodestone/lod/cursor.h>
+#include <lodestone/lod/simplify.h>
 
 #include "support/catch.h"
 #include "support/data.h"
@@ -77,6 +79,71 @@ TEST_CASE("inspect lists a stream's chunks") {
   }
   CHECK(end == json["bytes"]);
   CHECK_THAT(run_program({"inspect", stream}).out, contains("bytes so far"));
+}
+
+TEST_CASE("inspect --stream tells what parts and rounds of a stream take, and they add up to the file") {
+  const ScratchDirectory folder;
+  const std::string stream = build_ball(folder), suzi = (folder / "suzi.glb").string();
+  REQUIRE(run_program(
+              {"build", std::string(LODESTONE_SOURCE_DIR) + "/demo/suzi.glb", "-o", suzi, "--profile", "stream", "-q"})
+              .exit_code == 0);
+  for (const std::string& file : {stream, suzi}) {
+    CAPTURE(file);
+    const ProgramRun run = run_program({"inspect", file, "--stream", "--json"});
+    REQUIRE(run.exit_code == 0);
+    const auto json = nlohmann::json::parse(run.out);
+    CHECK(json["kind"] == "parts");
+    double sum = 0;
+    for (const auto& part : json["parts"]) sum += part["bits"].get<double>();
+    CHECK(std::abs(sum - 8 * json["bytes"].get<double>()) < 1e-6);
+    REQUIRE(json["streams"].size() == 1);
+    const auto& one = json["streams"][0];
+    CHECK(one["version"] == "3.0");
+    const std::size_t count = one["parts"].size();
+    CHECK(count == (file == stream ? 7 : 8));
+    std::vector<double> parts(count);
+    for (const auto& round : one["rounds"]) {
+      REQUIRE(round["bits"].size() == count);
+      for (std::size_t i = 0; i < count; ++i) parts[i] += round["bits"][i].get<double>();
+    }
+    CHECK(parts[0] == 0);
+    for (std::size_t i = 1; i < count; ++i) {
+      CAPTURE(i);
+      CHECK(json["parts"][i]["name"] == one["parts"][i]);
+      CHECK(std::abs(parts[i] - json["parts"][i]["bits"].get<double>()) < 1e-6);
+    }
+    const auto& last = one["rounds"].back();
+    CHECK(last["bytes_so_far"] == one["bytes"]);
+    CHECK(last["deviation_bound"] == 0);
+    CHECK(last["faces"] == one["chunks"].back()["faces"]);
+    const ProgramRun shown = run_program({"inspect", file, "--stream"});
+    CHECK_THAT(shown.out, contains("bits a vertex"));
+    CHECK_THAT(shown.out, contains(file == stream ? "positions" : "NORMAL"));
+  }
+  CHECK(nlohmann::json::parse(run_program({"inspect", stream, "--stream", "--json"}).out)["bytes"] ==
+        std::filesystem::file_size(stream));
+}
+
+TEST_CASE("inspect --stream says of what it cannot tell that, and refuses files without a stream") {
+  const ScratchDirectory folder;
+  const std::string ball = write_ball(folder).string(), old = (folder / "old.lods").string();
+  SimplifyOptions options;
+  const auto mesh = simplify(read_mesh(ball).value().mesh, options);
+  REQUIRE(mesh);
+  const std::vector<std::byte> bytes = encode_stream(mesh->mesh).value();
+  write_text(old, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  CHECK_THAT(run_program({"inspect", old, "--stream"}).out, contains("not told apart"));
+  const auto json = nlohmann::json::parse(run_program({"inspect", old, "--stream", "--json"}).out);
+  CHECK(json["streams"][0]["parts"].is_null());
+  CHECK(json["streams"][0]["bytes"] == bytes.size());
+  CHECK(json["streams"][0]["chunks"].size() >= 2);
+
+  const ProgramRun none = run_program({"inspect", ball, "--stream"});
+  CHECK(none.exit_code == 3);
+  CHECK_THAT(none.err, contains("nor a stream"));
+  const std::string plain = (folder / "plain.glb").string();
+  REQUIRE(run_program({"build", ball, "-o", plain, "--no-stream", "-q"}).exit_code == 0);
+  CHECK_THAT(run_program({"inspect", plain, "--stream"}).err, contains("none of its meshes has one"));
 }
 
 TEST_CASE("extract and compare take a stream like any file, and build does as its input") {
