@@ -26,21 +26,20 @@ namespace {
 
 using namespace detail;
 
-/// Adds up what the extras of many nodes say of one level.
+/// Adds up what is said of one level in many places.
 class LevelNumbers {
  public:
-  /// `scale` and `area` of a node's mesh stand with all its levels; files of one mesh may lack them.
-  void add(const Json& node) {
+  /// Adds what a node's extras say. `scale` and `area` of its mesh stand with all its levels; files of one mesh may
+  /// lack them.
+  void add_node(const Json& node) {
     const Json* extras = find_member(node, "extras");
     const Json* numbers = extras != nullptr ? find_member(*extras, "lodestone") : nullptr;
-    if (numbers == nullptr) return;
-    const double scale = number_member(*numbers, "world_scale", 1), area = number_member(*numbers, "world_area", 1);
-    const double rms = number_member(*numbers, "rms_deviation", 0) * scale;
-    maximum_ = std::max(maximum_, number_member(*numbers, "maximum_deviation", 0) * scale);
-    curvature_error_ = std::max(curvature_error_, number_member(*numbers, "curvature_error", 0));
-    mean_ += number_member(*numbers, "mean_deviation", 0) * scale * area;
-    squares_ += rms * rms * area;
-    area_ += area;
+    if (numbers != nullptr) add(*numbers, "maximum_deviation");
+  }
+
+  /// Adds what a mesh that shows a level of its stream says of that.
+  void add_mesh(const Json& mesh) {
+    if (shows_level_of_stream(mesh)) add(*GltfDocument::extension(mesh, kStreamExtension), "deviation");
   }
 
   void store(Asset::Level& level) const {
@@ -52,6 +51,16 @@ class LevelNumbers {
   }
 
  private:
+  void add(const Json& numbers, const char* maximum) {
+    const double scale = number_member(numbers, "world_scale", 1), area = number_member(numbers, "world_area", 1);
+    const double rms = number_member(numbers, "rms_deviation", 0) * scale;
+    maximum_ = std::max(maximum_, number_member(numbers, maximum, 0) * scale);
+    curvature_error_ = std::max(curvature_error_, number_member(numbers, "curvature_error", 0));
+    mean_ += number_member(numbers, "mean_deviation", 0) * scale * area;
+    squares_ += rms * rms * area;
+    area_ += area;
+  }
+
   double maximum_ = 0, curvature_error_ = 0;
   double mean_ = 0, squares_ = 0, area_ = 0;
 };
@@ -88,11 +97,16 @@ Result<StoredGeometry> stored_geometry(const GltfDocument& document, const std::
 
 using Chains = std::vector<std::vector<std::size_t>>;
 
-Result<void> read_numbers(const GltfDocument& document, std::size_t index, const Chains& chains, Asset::Level& level) {
+Result<void> read_numbers(const GltfDocument& document, std::size_t index, const Chains& chains,
+                          const std::set<std::size_t>& meshes, Asset::Level& level) {
   LevelNumbers numbers;
+  for (const std::size_t mesh : meshes) {
+    LODESTONE_TRY(const Json* const json, document.element("meshes", "mesh", mesh));
+    numbers.add_mesh(*json);
+  }
   for (const auto& chain : chains) {
     LODESTONE_TRY(const Json* const node, document.element("nodes", "node", chain[std::min(index, chain.size() - 1)]));
-    numbers.add(*node);
+    numbers.add_node(*node);
     LODESTONE_TRY(const Json* const finest, document.element("nodes", "node", chain[0]));
     level.screen_coverage = std::max(level.screen_coverage, screen_coverage(*finest, index));
   }
@@ -135,7 +149,7 @@ Result<Asset::Level> read_level(const GltfDocument& document, std::size_t index,
   LODESTONE_TRY(const StoredGeometry stored, stored_geometry(document, meshes));
   level.byte_length = stored.bytes;
   level.compression = stored.compression;
-  LODESTONE_CHECK(read_numbers(document, index, chains, level));
+  LODESTONE_CHECK(read_numbers(document, index, chains, meshes, level));
   return level;
 }
 

@@ -20,6 +20,16 @@ bool same_mesh(const Mesh& a, const Mesh& b) {
                     [](const Attribute& x, const Attribute& y) { return x.name == y.name && x.data == y.data; });
 }
 
+void add_shown_numbers(const AssetLevel& level, const SceneMesh& mesh, Json& extension) {
+  const Deviation& d = level.deviation;
+  set_finite(extension, "deviation", d.maximum());
+  set_finite(extension, "mean_deviation", std::max(d.forward.mean, d.backward.mean));
+  set_finite(extension, "rms_deviation", std::max(d.forward.rms, d.backward.rms));
+  set_finite(extension, "curvature_error", level.curvature_error);
+  set_finite(extension, "world_scale", mesh.scale);
+  set_finite(extension, "world_area", mesh.area);
+}
+
 Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const SceneMesh& mesh, std::size_t node_count,
                    std::optional<double> position_step) {
   const Deviation& d = level.deviation;

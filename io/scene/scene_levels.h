@@ -17,4 +17,7 @@ bool same_mesh(const Mesh& a, const Mesh& b);
 Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const SceneMesh& mesh, std::size_t node_count,
                    std::optional<double> position_step);
 
+/// Adds the numbers of a level that a mesh shows, of which its stream leads to others, to the stream's extension.
+void add_shown_numbers(const AssetLevel& level, const SceneMesh& mesh, Json& extension);
+
 }  // namespace lodestone::detail

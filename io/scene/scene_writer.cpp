@@ -350,7 +350,7 @@ class SceneWriter {
       extension["bufferView"] = builder_.add_view(stream);
     }
     extension["version"] = version_text(stream);
-    if (is_compact(stream)) extension["deviation"] = levels_[mesh][0].deviation.maximum();
+    if (is_compact(stream)) add_shown_numbers(levels_[mesh][0], scene_.meshes()[mesh], extension);
     Json& extensions = builder_.at("meshes", impl_.sources[mesh].mesh)["extensions"];
     if (!extensions.is_object()) extensions = Json::object();
     extensions[kStreamExtension] = std::move(extension);

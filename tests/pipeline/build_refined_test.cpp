@@ -55,6 +55,7 @@ const std::vector<TriangleSoup>& shapes() {
 }  // namespace
 
 TEST_CASE("a refined file shows one level, and its stream leads to the whole mesh within its grid") {
+  int off = 0;
   for (const TriangleSoup& soup : shapes()) {
     const Scene scene = scene_of(soup);
     const Mesh& whole = scene.meshes()[0].mesh;
@@ -77,7 +78,17 @@ TEST_CASE("a refined file shows one level, and its stream leads to the whole mes
     CHECK(measure_deviation(last, whole).maximum() <= step);
     CHECK(result.levels[0].deviation.maximum() <= step);
     CHECK(result.levels[1].deviation.maximum() <= 1.01 * result.levels[1].deviation_bound + step);
+
+    // What the file says of the level that it shows is what was measured.
+    const Asset::Level shown = asset.levels().value()[0];
+    const Deviation& d = result.levels[1].deviation;
+    CHECK(shown.maximum_deviation == Approx(d.maximum()));
+    off += shown.maximum_deviation > 0 ? 1 : 0;
+    CHECK(shown.mean_deviation == Approx(std::max(d.forward.mean, d.backward.mean)));
+    CHECK(shown.rms_deviation == Approx(std::max(d.forward.rms, d.backward.rms)));
+    CHECK(shown.curvature_error == Approx(result.levels[1].curvature_error));
   }
+  CHECK(off >= 5);  // flat ones are not
 }
 
 TEST_CASE("a refined file names its stream's version, and is no original to build from") {
