@@ -10,7 +10,6 @@
 #include <lodestone/core/detail/try.h>
 #include <lodestone/core/parallel.h>
 
-#include "build_lods.h"
 #include "build_output.h"
 #include "build_run.h"
 #include "interruption.h"
@@ -45,11 +44,6 @@ bool writes_to_standard_output(const BuildCommand& options) {
 }
 
 Result<Outcome> build_one(const BuildCommand& options, ProgressBar& progress) {
-  if (writes_stream_file(options)) {
-    Result<Outcome> built = build_stream_file(options, progress);
-    progress.clear();
-    return built;
-  }
   const Result<FinishedBuild> result = run_build(options, progress);
   progress.clear();
   if (!result) return tl::unexpected(result.error());
@@ -218,7 +212,7 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->group(group);
   CLI::Option* bits =
       app.add_option("--qp", position_bits,
-                     "Bits of a position (default 14, more where the shape needs them); of a .lods 8 to 16")
+                     "Bits of a position (default 14, more where the shape needs them); of compact streams 8 to 16")
           ->check(CLI::Range(1, 30))
           ->type_name("BITS")
           ->group(group);

@@ -1,17 +1,21 @@
 #include "build_options.h"
 
+#include <array>
 #include <map>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
+#include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+#include <lodestone/io/compact_stream.h>
 #include <lodestone/io/file.h>
 
 #include "build_settings.h"
 #include "error_size.h"
 #include "file_words.h"
 #include "messages.h"
+#include "standard_streams.h"
 
 namespace lodestone::tool {
 namespace {
@@ -62,7 +66,46 @@ bool has_file_per_level(const BuildCommand& options) { return options.profile ==
 
 bool shows_one_level(const BuildCommand& options) { return options.profile == "stream"; }
 
+bool writes_stream_file(const BuildCommand& command) {
+  return is_standard_stream(command.output) ? command.format == "lods" : extension_of(command.output) == "lods";
+}
+
 namespace {
+
+/// Options of files with levels, which a stream has none of, or that streams have nothing for.
+Result<void> check_stream_file(const BuildCommand& command) {
+  struct Given {
+    bool given;
+    const char* name;
+    const char* why;
+  };
+  const std::array given = {
+      Given{command.per_mesh, "--per-mesh", "a .lods is one mesh"},
+      Given{command.profile != "msft-lod", "--profile", "a .lods is one file"},
+      Given{command.no_stream, "--no-stream", "a .lods is a stream"},
+      Given{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
+      Given{command.placement != "optimised", "--placement", "the vertices of a .lods are those of the input"},
+      Given{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}};
+  for (const Given& option : given)
+    if (option.given) return fail(ErrorCode::InvalidArgument, detail::text(option.name, ": ", option.why));
+  return {};
+}
+
+/// A stream has every level; only reports and pages have some.
+Result<void> check_stream_levels(const BuildCommand& options, const std::vector<LevelTarget>& given) {
+  if (options.report || options.html || (given.empty() && !options.level_count)) return {};
+  return fail(ErrorCode::InvalidArgument,
+              detail::text(options.level_count ? "--levels" : "--ratio, --faces, --error and --epsilon",
+                           ": a .lods has every level; with --report or --html they say which are measured"));
+}
+
+/// Compact streams have bits that not every file has.
+Result<void> check_stream_bits(const BuildCommand& command) {
+  const auto& bits = command.position_bits;
+  if (!bits || (*bits >= kLeastGridBits && *bits <= kMostGridBits)) return {};
+  return fail(ErrorCode::InvalidArgument, detail::text("--qp: a stream's positions have ", kLeastGridBits, " to ",
+                                                       kMostGridBits, " bits, not ", *bits));
+}
 
 Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   Result<std::vector<LevelTarget>> given = options.targets.parse();
@@ -72,6 +115,10 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
       return fail(ErrorCode::InvalidArgument, "--profile stream shows one level: give one target, and no --levels");
     if (options.no_stream) return fail(ErrorCode::InvalidArgument, "--no-stream: --profile stream is a stream");
     return given->empty() ? ratio_targets(kShownRatio, 1) : given;
+  }
+  if (writes_stream_file(options)) {
+    LODESTONE_CHECK(check_stream_levels(options, *given));
+    if (!options.report && !options.html) return given;
   }
   const bool by_ratio = given->empty() || options.targets.is_one_ratio();
   if (!by_ratio && options.level_count) {
@@ -120,6 +167,8 @@ Result<AssetOptions> asset_options(const BuildCommand& options) {
 bool writes_stream(const BuildCommand& options) { return !options.no_stream && !has_file_per_level(options); }
 
 Result<BuildOptions> build_options(const BuildCommand& command) {
+  if (writes_stream_file(command)) LODESTONE_CHECK(check_stream_file(command));
+  if (writes_stream_file(command) || shows_one_level(command)) LODESTONE_CHECK(check_stream_bits(command));
   BuildOptions options;
   options.effort = command.effort;
   LODESTONE_TRY(options.targets, requested_levels(command));
@@ -132,6 +181,7 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   options.placement = command.placement == "subset" ? Placement::Subset : Placement::Optimised;
   if (has_file_per_level(command)) options.layout = FileLayout::FilePerLevel;
   if (shows_one_level(command)) options.layout = FileLayout::Refined;
+  if (writes_stream_file(command)) options.layout = FileLayout::StreamAlone;
   options.stream = !command.no_stream;
   options.strict = command.strict;
   options.keep_levels = command.html.has_value();
@@ -147,8 +197,8 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"reference", options.reference},
                {"levels", level_count},
                {"per_mesh", options.per_mesh},
-               {"placement", options.placement},
-               {"profile", options.profile},
+               {"placement", writes_stream_file(options) ? "subset" : options.placement},
+               {"profile", writes_stream_file(options) ? "lods" : options.profile},
                {"lock_border", options.lock_border},
                {"vanish", options.vanish},
                {"crease_angle_degrees", options.crease_angle ? Json(*options.crease_angle) : Json(nullptr)},
@@ -156,7 +206,7 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"importance", options.importance},
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", writes_stream(options)},
-               {"compression", options.compression}};
+               {"compression", writes_stream_file(options) ? Json(nullptr) : Json(options.compression)}};
   const bool has_grid = compression_of(options.compression) != Compression::None;
   const bool has_bits = has_grid && options.position_bits;
   json["position_bits"] = has_bits ? Json(*options.position_bits) : Json(nullptr);

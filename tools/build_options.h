@@ -17,6 +17,9 @@ bool has_file_per_level(const BuildCommand& options);
 /// True with `--profile stream`: one coarse level in the file, all others in its stream.
 bool shows_one_level(const BuildCommand& options);
 
+/// True where a stream alone is written, as a .lods.
+bool writes_stream_file(const BuildCommand& command);
+
 /// True where each mesh's removal stream is written.
 bool writes_stream(const BuildCommand& command);
 

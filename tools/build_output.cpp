@@ -49,7 +49,7 @@ Result<void> check_format(const BuildCommand& options) {
     return {};
   }
   const std::string extension = extension_of(options.output);
-  if (extension == "glb" || extension == "gltf") return {};
+  if (extension == "glb" || extension == "gltf" || extension == "lods") return {};
   const std::string hint = extension.empty() ? ": write '" + options.output.string() + ".glb', or '" +
                                                    options.output.string() + "/' for a folder"
                                              : "";

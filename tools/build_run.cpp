@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -163,11 +164,21 @@ std::string missed_targets(const BuildReport& report, const BuildCommand& option
                                     : missed_faces(report, options, targets, faces, beyond));
 }
 
+/// Reads all triangles of the input as one mesh; `materials` are their materials' numbers, by primitive.
+Result<Scene> read_as_one_mesh(const BuildCommand& options, std::vector<Index>& materials) {
+  LODESTONE_TRY(MeshFile file, read_mesh_file(options.input, options.input_format));
+  std::set<Index> numbers(file.mesh.face_material.begin(), file.mesh.face_material.end());
+  materials.assign(numbers.begin(), numbers.end());
+  return Scene::from_mesh(std::move(file), options.input.stem().string());
+}
+
 /// Reads the input and says what is otherwise in it than one would think.
-Result<Scene> read_input(const BuildCommand& options, BuildReport& report, ProgressBar& bar) {
+Result<Scene> read_input(const BuildCommand& options, std::vector<Index>& materials, BuildReport& report,
+                         ProgressBar& bar) {
   bar.update("reading", 0);
   detail::Stopwatch stopwatch;
-  Result<Scene> scene = read_scene(options.input, options.input_format);
+  Result<Scene> scene = writes_stream_file(options) ? read_as_one_mesh(options, materials)
+                                                    : read_scene(options.input, options.input_format);
   bar.clear();
   if (!scene) return scene;
   LODESTONE_CHECK(check_input(options.input, *scene));
@@ -201,7 +212,7 @@ Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar) {
   LODESTONE_CHECK(check_paths(command, level_count));
   report.settings = settings_json(command, options.simplify.weights, level_count);
 
-  LODESTONE_TRY(const Scene scene, read_input(command, report, bar));
+  LODESTONE_TRY(const Scene scene, read_input(command, options.material_numbers, report, bar));
   BarObserver observer(bar);
   Result<BuildResult> built = build_asset(scene, options, observer);
   bar.clear();
@@ -214,6 +225,8 @@ Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar) {
     if (command.strict) finished.outcome = Outcome::TargetNotMet;
   }
   if (finished.outcome != Outcome::Done) return finished;
+  if (is_by_compact_streams(options.layout))
+    print_warning("the format of streams by --profile stream and of .lods is a draft: a later version may not read it");
   LODESTONE_CHECK(write(command, scene, report));
   return finished;
 }

@@ -17,8 +17,6 @@ namespace lodestone::detail {
 // The fixed parts of a compact stream; docs/compact-stream.md is the description that counts.
 
 inline constexpr std::uint16_t kCompactMinor = 0;
-inline constexpr int kLeastGridBits = 8;
-inline constexpr int kMostGridBits = 16;
 inline constexpr int kLeastAttributeBits = 2;
 inline constexpr int kMostAttributeBits = 24;
 inline constexpr std::uint64_t kMostRecordsPerByte = 8;    ///< of a chunk; the encoder pads it

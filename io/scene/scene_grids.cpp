@@ -314,7 +314,7 @@ Result<std::vector<QuantizationGrids>> fit_grids(const Scene& scene, std::span<c
 namespace lodestone {
 
 std::vector<CompactOptions> compact_options(const Scene& scene, const AssetOptions& options) {
-  constexpr int kLeastBits = 8, kMostBits = 16, kMostOtherBits = 24;
+  constexpr int kMostOtherBits = 24;
   AssetOptions plain = options;
   plain.compression = Compression::Draco;
   plain.position_grid.reset();
@@ -325,12 +325,12 @@ std::vector<CompactOptions> compact_options(const Scene& scene, const AssetOptio
   std::vector<CompactOptions> compact;
   for (const detail::QuantizationGrid& grid : fit()) {
     CompactOptions& mesh = compact.emplace_back();
-    mesh.grid_bits = grid.is_exact() ? kMostBits : std::clamp(grid.bits, kLeastBits, kMostBits);
+    mesh.grid_bits = grid.is_exact() ? kMostGridBits : std::clamp(grid.bits, kLeastGridBits, kMostGridBits);
     mesh.normal_bits = std::min(options.normal_bits, kMostOtherBits);
     mesh.texture_bits = std::clamp(options.texcoord_bits, 2, kMostOtherBits);
     mesh.other_bits = std::clamp(std::max(options.generic_bits, detail::kMinWeightBits), 2, kMostOtherBits);
   }
-  plain.position_bits = kMostBits;  // boxes do not hang on it
+  plain.position_bits = kMostGridBits;  // boxes do not hang on it
   const std::vector<detail::QuantizationGrid> boxes = fit();
   for (std::size_t i = 0; i < compact.size(); ++i)
     if (const auto& o = boxes[i].origin; o.size() == 3)

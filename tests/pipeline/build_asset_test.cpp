@@ -41,7 +41,8 @@ BuildOptions options_of(FileLayout layout) {
 
 TEST_CASE("a build says how far it is: each stage from 0 to 1, never back") {
   const Scene scene = ball_scene();
-  for (const FileLayout layout : {FileLayout::OneFile, FileLayout::FilePerLevel, FileLayout::Refined}) {
+  for (const FileLayout layout :
+       {FileLayout::OneFile, FileLayout::FilePerLevel, FileLayout::Refined, FileLayout::StreamAlone}) {
     Watcher watcher;
     BuildOptions options = options_of(layout);
     if (layout == FileLayout::Refined) options.targets = ratio_targets(0.1, 1);
@@ -64,7 +65,7 @@ TEST_CASE("a build can be cancelled at any of its calls, and makes no other then
   Random random(12);
   BuildOptions refined = options_of(FileLayout::Refined);
   refined.targets = ratio_targets(0.1, 1);
-  for (const BuildOptions& options : {BuildOptions{}, refined}) {
+  for (const BuildOptions& options : {BuildOptions{}, refined, options_of(FileLayout::StreamAlone)}) {
     Watcher whole;
     REQUIRE(build_asset(scene, options, whole));
     std::vector<std::size_t> chosen = {1, 2, whole.calls};

@@ -91,6 +91,53 @@ TEST_CASE("a refined file shows one level, and its stream leads to the whole mes
   CHECK(off >= 5);  // flat ones are not
 }
 
+TEST_CASE("a stream alone leads to the mesh, through the levels that it is measured at") {
+  for (const TriangleSoup& soup : shapes()) {
+    const Scene scene = scene_of(soup);
+    const Mesh& whole = scene.meshes()[0].mesh;
+    BuildOptions options;
+    options.layout = FileLayout::StreamAlone;
+    options.targets = ratio_targets(0.3, 1);
+    options.material_numbers = {7, 3};
+    options.keep_levels = true;
+    const BuildResult result = built(scene, options);
+    REQUIRE(result.levels.size() == 2);
+    CHECK(result.levels[1].face_count <= result.levels[0].face_count * 3 / 10);
+    const std::vector<std::byte>& bytes = result.files[0].glb;
+    CHECK(result.stream.bytes == bytes.size());
+    CHECK(result.levels[0].bytes == bytes.size());
+    CHECK(result.levels[1].bytes <= bytes.size());
+    const ProgressiveMesh mesh = read_stream(bytes).value();
+    CHECK(mesh.groups[0].material == 7);
+    if (mesh.groups.size() > 1) CHECK(mesh.groups[1].material == 3);
+    const Mesh last = extract_level(mesh, kNoIndex);
+    CHECK(last.face_count() == whole.face_count());
+    CHECK(measure_deviation(last, whole).maximum() <= 2 * result.quantisation_error);
+    CHECK(result.levels[0].deviation.maximum() <= 2 * result.quantisation_error);
+    CHECK(result.levels[1].deviation.maximum() <= 1.01 * result.levels[1].deviation_bound);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Mesh& level = result.decoded[0].levels[i].mesh;
+      CHECK(level.face_count() == result.levels[i].face_count);
+      for (const Index material : level.face_material) CHECK(material < scene.meshes()[0].materials.size());
+    }
+  }
+}
+
+TEST_CASE("a stream alone is of one mesh, and compact streams have 8 to 16 bits") {
+  const Scene scene = scene_of(icosphere(2, 0.02, 7));
+  BuildOptions options;
+  options.layout = FileLayout::StreamAlone;
+  for (const int bits : {7, 17}) {
+    options.storage.position_bits = bits;
+    CHECK(build_asset(scene, options).error().code == ErrorCode::InvalidArgument);
+    BuildOptions other = refined();
+    other.storage.position_bits = bits;
+    CHECK(build_asset(scene, other).error().code == ErrorCode::InvalidArgument);
+  }
+  options.storage.position_bits = 16;
+  CHECK(build_asset(scene, options).value().position_bits == 16);
+}
+
 TEST_CASE("a refined file names its stream's version, and is no original to build from") {
   const BuildResult result = built(scene_of(terrain(8, 1)), refined());
   const GltfFile file = GltfFile::from_glb(result.files[0].glb);

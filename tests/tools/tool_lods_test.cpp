@@ -1,5 +1,7 @@
 // Streams in files of their own: what build writes, the other commands read.
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include <lodestone/core/assemble.h>
@@ -9,6 +11,7 @@
 #include <lodestone/io/stream_reader.h>
 #include <lodestone/io/write_mesh.h>
 #include <lodestone/lod/cursor.h>
+#include <lodestone/lod/deviation.h>
 #include <lodestone/lod/simplify.h>
 
 #include "support/catch.h"
@@ -32,7 +35,8 @@ std::string build_ball(const ScratchDirectory& folder) {
   const ProgramRun run = run_program({"build", write_ball(folder).string(), "-o", stream.string()});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
-  CHECK_THAT(run.out, contains("ball.lods: 1280 faces, 642 vertices; base mesh 4 faces; "));
+  CHECK_THAT(run.out, contains("stream: 638 records in "));
+  CHECK_THAT(run.out, contains(" over a base of 4 faces, "));
   CHECK_THAT(run.err, contains("draft"));
   return stream.string();
 }
@@ -198,10 +202,104 @@ TEST_CASE("options that say nothing for a stream are refused by name") {
   refused({"--error", "1%"}, 1, "a .lods has every level");
   refused({"--profile", "files"}, 1, "--profile");
   refused({"--no-stream"}, 1, "--no-stream");
-  refused({"--html", (folder / "p.html").string()}, 1, "--html");
-  refused({"--report", (folder / "r.json").string()}, 1, "--report");
-  refused({"--qp", "20"}, 1, "grid of 20 bits");
-  refused({"--qp", "7"}, 1, "grid of 7 bits");
+  refused({"--faces", "100,10"}, 1, "--report or --html");
+  refused({"--placement", "subset"}, 1, "--placement");
+  refused({"--grid-step", "0.1"}, 1, "--grid-step");
+  refused({"--compress", "none"}, 1, "--compress");
+  refused({"--qp", "20"}, 1, "--qp: a stream's positions have 8 to 16 bits, not 20");
+  refused({"--qp", "7"}, 1, "not 7");
+  refused({"--report", stream}, 1, "is the output");
+}
+
+TEST_CASE("a file with a compact stream refuses bits that streams do not have, and says that its format is a draft") {
+  const ScratchDirectory folder;
+  const std::string ball = write_ball(folder).string(), file = (folder / "x.glb").string();
+  const ProgramRun refused = run_program({"build", ball, "-o", file, "--profile", "stream", "--qp", "17"});
+  CHECK(refused.exit_code == 1);
+  CHECK_THAT(refused.err, contains("--qp: a stream's positions have 8 to 16 bits, not 17"));
+  CHECK(!std::filesystem::exists(file));
+  const ProgramRun built = run_program({"build", ball, "-o", file, "--profile", "stream", "--qp", "16", "-q"});
+  CHECK(built.exit_code == 0);
+  CHECK_THAT(built.err, contains("draft"));
+  CHECK(run_program({"build", ball, "-o", file, "--qp", "17", "-q"}).err.empty());
+}
+
+TEST_CASE("the report of a stream says what its levels are, as they come out of it, and the page shows them") {
+  const ScratchDirectory folder;
+  const std::string ball = write_ball(folder).string(), stream = (folder / "x.lods").string(),
+                    report = (folder / "r.json").string(), page = (folder / "p.html").string();
+  REQUIRE(
+      run_program({"build", ball, stream, "--report", report, "--html", page, "--faces", "400,50", "-q"}).exit_code ==
+      0);
+  const auto json = nlohmann::json::parse(file_text(report));
+  CHECK(json["settings"]["profile"] == "lods");
+  CHECK(json["output"]["bytes"] == std::filesystem::file_size(stream));
+  CHECK(json["output"]["position_bits"] == 14);
+  CHECK(json["stream"]["bytes"] == std::filesystem::file_size(stream));
+  const ProgressiveMesh mesh = read_stream(read_file(stream).value()).value();
+  REQUIRE(json["levels"].size() == 3);
+  const auto counts = face_counts(mesh);
+  std::uint64_t before = 0;
+  for (std::size_t i = 3; i-- > 0;) {  // coarse to fine
+    CAPTURE(i);
+    const auto& level = json["levels"][i];
+    const std::size_t faces = level["faces"];
+    CHECK(faces <= (i == 0 ? 1280U : i == 1 ? 400U : 50U));
+    const auto position = static_cast<Index>(std::find(counts.rbegin(), counts.rend(), faces) - counts.rbegin());
+    REQUIRE(position < counts.size());
+    const Mesh found = extract_level(mesh, static_cast<Index>(counts.size() - 1 - position));
+    const Mesh original = read_mesh(ball).value().mesh;
+    CHECK(level["deviation"]["max"].get<double>() ==
+          Approx(measure_deviation(original, found).maximum()).epsilon(0.02));
+    CHECK(level["deviation_bound"].get<double>() >= 0.99 * level["deviation"]["max"].get<double>() * (i == 0 ? 0 : 1));
+    CHECK(level["bytes"].get<std::uint64_t>() >= before);
+    before = level["bytes"];
+  }
+  CHECK(before == std::filesystem::file_size(stream));
+  CHECK_THAT(file_text(page), contains("<html"));
+
+  // Without wishes, as many levels as other files have.
+  REQUIRE(run_program({"build", ball, stream, "--report", report, "-q"}).exit_code == 0);
+  CHECK(nlohmann::json::parse(file_text(report))["levels"].size() == 5);
+  CHECK(run_program({"build", ball, stream, "--report", report, "--faces", "1", "--strict", "-q"}).exit_code == 5);
+}
+
+TEST_CASE("a stream keeps what is important, and names materials by their numbers in the file") {
+  const ScratchDirectory folder;
+  const std::string stream = (folder / "x.lods").string(), obj = (folder / "two.obj").string(),
+                    settings = (folder / "s.json").string();
+  TriangleSoup soup = two_material_grid(12);
+  std::string text = "mtllib two.mtl\n";
+  std::size_t white = 0;
+  for (std::size_t v = 0; v < soup.positions.size(); ++v) {
+    const Vec3f& p = soup.positions[v];
+    text += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z);
+    text += v % 3 == 0 ? " 1 1 1\n" : " 0.5 0.5 0.5\n";
+    white += v % 3 == 0 ? 1 : 0;
+  }
+  for (std::size_t face = 0; 3 * face < soup.indices.size(); ++face) {
+    text += soup.face_material[face] == 0 ? "usemtl floor\nf" : "usemtl wall\nf";
+    for (std::size_t k = 0; k < 3; ++k) text += " " + std::to_string(soup.indices[3 * face + k] + 1);
+    text += "\n";
+  }
+  write_text(obj, text);
+  write_text(folder / "two.mtl", "newmtl floor\nnewmtl wall\n");
+  REQUIRE(run_program({"build", obj, stream, "-q"}).exit_code == 0);
+  const ProgressiveMesh usual = read_stream(read_file(stream).value()).value();
+  REQUIRE(usual.groups.size() == 2);
+  CHECK(usual.groups[0].material == 1);
+  CHECK(usual.groups[1].material == 2);
+
+  write_text(settings, R"({"materials": {"wall": {"lock": true}}})");
+  const ProgramRun run = run_program({"build", obj, stream, "--settings", settings, "-q"});
+  CAPTURE(run.err);
+  REQUIRE(run.exit_code == 0);
+  const ProgressiveMesh kept = read_stream(read_file(stream).value()).value();
+  CHECK(kept.groups[1].base_corners.size() == 3 * kept.groups[1].face_count);
+  CHECK(kept.groups[0].base_corners.size() < 3 * kept.groups[0].face_count);
+  CHECK(usual.base_vertex_count < white);
+  REQUIRE(run_program({"build", obj, stream, "--importance", "COLOR_0", "-q"}).exit_code == 0);
+  CHECK(read_stream(read_file(stream).value()).value().base_vertex_count >= white);
 }
 
 TEST_CASE("a stream has the attributes of its input") {

@@ -4,6 +4,7 @@
 #include <lodestone/pipeline/build_asset.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -118,13 +119,13 @@ Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const Compact
 /// A mesh that is beyond the stream's limits goes without one; its levels do not need it, unless all but one are in it.
 Result<void> encode_streams(const Scene& scene, const BuildOptions& build, std::vector<LeveledMesh>& levels,
                             BuildResult& result, Notes& notes, const Progress& progress) {
-  const bool refines = build.layout == FileLayout::Refined;
+  const bool is_compact = is_by_compact_streams(build.layout);
   std::vector<CompactOptions> compact;
-  if (refines) compact = compact_options(scene, build.storage);
+  if (is_compact) compact = compact_options(scene, build.storage);
   std::vector<Result<std::vector<std::byte>>> streams(levels.size());
   for_each_in_parallel(levels.size(), [&](std::size_t i) {
     const Progress part = progress.part(1 / static_cast<double>(levels.size()));
-    if (!part.is_cancelled()) streams[i] = encode(result.simplified[i].mesh, refines ? &compact[i] : nullptr, part);
+    if (!part.is_cancelled()) streams[i] = encode(result.simplified[i].mesh, is_compact ? &compact[i] : nullptr, part);
   });
   if (!progress.reach(1)) return cancelled();
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -132,7 +133,7 @@ Result<void> encode_streams(const Scene& scene, const BuildOptions& build, std::
     if (streams[i]) {
       result.meshes[i].stream.bytes = streams[i]->size();
       levels[i].stream = std::move(*streams[i]);
-    } else if (!refines && streams[i].error().code == ErrorCode::LimitExceeded) {
+    } else if (!is_compact && streams[i].error().code == ErrorCode::LimitExceeded) {
       notes.add(text(name, " has no removal stream: ", streams[i].error().message));
     } else {
       return fail(streams[i].error().code, text(name, ": ", streams[i].error().message));
@@ -181,6 +182,77 @@ Result<void> make_file(MeasuredScene& measured, const LevelPlan& plan, const std
   return {};
 }
 
+/// Has a stream call materials as the options do.
+void name_materials(const std::vector<Index>& numbers, ProgressiveMesh& mesh) {
+  for (FaceGroup& group : mesh.groups)
+    if (group.material < numbers.size()) group.material = numbers[group.material];
+}
+
+/// The primitive that a material so called is of.
+Index primitive_of(Index material, const std::vector<Index>& numbers) {
+  const auto found = std::find(numbers.begin(), numbers.end(), material);
+  return found == numbers.end() ? material : static_cast<Index>(found - numbers.begin());
+}
+
+/// The last of a stream's positions with at most so many faces.
+Index position_of_faces(const std::vector<Index>& counts, std::size_t face_count) {
+  std::size_t position = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] <= face_count) position = i;
+  return static_cast<Index>(position);
+}
+
+/// How many bytes of a stream lead to a position.
+std::uint64_t bytes_up_to(std::span<const std::byte> stream, Index position) {
+  const auto chunks = read_compact_chunks(stream);
+  if (!chunks) return 0;
+  std::uint64_t end = 0;
+  for (const CompactChunk& chunk : *chunks) {
+    end = chunk.byte_offset + chunk.byte_length;
+    if (chunk.record_begin + chunk.record_count >= position) break;
+  }
+  return end;
+}
+
+/// Makes the stream of `FileLayout::StreamAlone` the only file, and measures the levels as it leads to them: records of
+/// a round have another order there, so that a level between two rounds is not quite the one that was planned.
+Result<void> make_stream_file(MeasuredScene& measured, const LevelPlan& plan, std::vector<LeveledMesh>& levels,
+                              const BuildOptions& options, BuildResult& result, BuildObserver& observer) {
+  Stopwatch stopwatch;
+  const SceneMesh& mesh = measured.scene().meshes()[0];
+  std::vector<std::byte>& stream = levels[0].stream;
+  LODESTONE_TRY(ProgressiveMesh decoded, read_stream(stream));
+  for (FaceGroup& group : decoded.groups) group.material = primitive_of(group.material, options.material_numbers);
+  const std::vector<Index> counts = face_counts(decoded);
+  std::vector<std::vector<AssetLevel>> found(1);
+  for (std::size_t i = 0; i < plan.level_count(); ++i) {
+    const Index position = position_of_faces(counts, levels[0].levels[i].mesh.face_count());
+    AssetLevel& level = found[0].emplace_back(std::move(levels[0].levels[i]));
+    level.mesh = extract_level(decoded, position);
+    const auto bound = static_cast<double>(decoded.deviation[position]);
+    BuildResult::Level& reported = result.levels[i];
+    reported.face_count = result.meshes[0].levels[i].face_count = level.mesh.face_count();
+    reported.deviation_bound = bound * mesh.scale;
+    reported.curvature_error = static_cast<double>(decoded.curvature_error[position]);
+    reported.bytes = bytes_up_to(stream, position);
+    result.meshes[0].levels[i].deviation_bound = bound;
+  }
+  LODESTONE_CHECK(measure_levels(measured, plan, options, {0, 1, 0}, found, result, observer));
+  if (options.keep_levels) keep_levels(found, result);
+  const CompactOptions compact = compact_options(measured.scene(), options.storage)[0];
+  result.position_bits = compact.grid_bits;
+  if (compact.grid)  // half the diagonal of a step
+    result.quantisation_error = std::sqrt(0.75) * static_cast<double>(compact.grid->range) /
+                                static_cast<double>((1 << compact.grid_bits) - 1) * mesh.scale;
+  result.stream.bytes = stream.size();
+  EncodedAsset file;
+  file.layout.stream_bytes = file.layout.total_bytes = stream.size();
+  file.glb = std::move(stream);
+  result.files.push_back(std::move(file));
+  result.timings_ms.levels += stopwatch.lap_ms();
+  return {};
+}
+
 /// What streams lead to in the end, measured as they are decoded.
 Result<void> measure_refined(MeasuredScene& measured, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
                              const BuildOptions& options, BuildResult& result, BuildObserver& observer) {
@@ -218,8 +290,12 @@ Result<void> check_options(const BuildOptions& options) {
   if (options.layout == FileLayout::Refined && options.targets.size() > 1)
     return fail(ErrorCode::InvalidArgument,
                 text(options.targets.size(), " targets, where the file shows one level and streams the others"));
-  if (options.layout == FileLayout::Refined && options.storage.position_grid)
+  if (!is_by_compact_streams(options.layout)) return {};
+  if (options.storage.position_grid)
     return fail(ErrorCode::Unsupported, "a grid of a given step, which compact streams do not have");
+  if (const auto& bits = options.storage.position_bits; bits && (*bits < kLeastGridBits || *bits > kMostGridBits))
+    return fail(ErrorCode::InvalidArgument,
+                text("positions of ", *bits, " bits, where streams have ", kLeastGridBits, " to ", kMostGridBits));
   return {};
 }
 
@@ -233,6 +309,11 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   LODESTONE_CHECK(check_options(options));
   LODESTONE_CHECK(check_names(options.importance, scene));
   LODESTONE_CHECK(sort_finest_first(options.targets, scene));
+  if (options.layout == FileLayout::StreamAlone) {
+    if (scene.meshes().size() != 1)
+      return fail(ErrorCode::InvalidArgument, text("a stream alone is of one mesh, not of ", scene.meshes().size()));
+    options.placement = Placement::Subset;
+  }
 
   LODESTONE_TRY(result.simplified, simplify_scene(scene, options, observer));
   report_streams(scene, result);
@@ -252,10 +333,16 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   if (options.strict && !result.met) return result;
 
   const Progress writing = stage_progress(observer, BuildStage::Writing);
+  if (options.layout == FileLayout::StreamAlone) name_materials(options.material_numbers, result.simplified[0].mesh);
   if (writes_streams(options))
     LODESTONE_CHECK(encode_streams(scene, options, levels, result, notes, writing.part(kStreamsShare)));
   writing.reach(kStreamsShare);
   result.timings_ms.write = stopwatch.lap_ms();
+  if (options.layout == FileLayout::StreamAlone) {
+    LODESTONE_CHECK(make_stream_file(measured, plan, levels, options, result, observer));
+    if (!writing.reach(1)) return cancelled();
+    return result;
+  }
   if (options.layout == FileLayout::Refined) {
     LODESTONE_CHECK(
         make_refined_file(measured, plan, levels, options, result, notes, writing.part(1 - kStreamsShare), observer));

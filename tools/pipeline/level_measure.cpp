@@ -84,7 +84,7 @@ Result<void> measure_levels(MeasuredScene& measured, const LevelPlan& plan, cons
     if (progress.is_cancelled()) return;
     const Progress part = progress.part(share);
     const bool is_as_it_was = options.storage.compression == Compression::None &&
-                              options.layout != FileLayout::Refined && is_whole(plan, result.simplified, mesh, number);
+                              !is_by_compact_streams(options.layout) && is_whole(plan, result.simplified, mesh, number);
     if (!is_as_it_was && (level == 0 || !plan.repeats(mesh, number)))
       measure_level(scene, measured.original(mesh), meshes[mesh][level].mesh, part, result.meshes[mesh].levels[number]);
     part.reach(1);

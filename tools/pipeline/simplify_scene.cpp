@@ -38,7 +38,7 @@ Result<SimplifyOptions> options_for(const Scene& scene, const SceneMesh& mesh, c
   SimplifyOptions options = build.simplify;
   options.effort = build.effort;
   options.measure_step = measure_step(build.effort);
-  if (build.layout == FileLayout::Refined) options.dense_rounds = kStreamDenseRounds;
+  if (is_by_compact_streams(build.layout)) options.dense_rounds = kStreamDenseRounds;
   options.stop = stop_criteria(scene, mesh, build);
   options.weights.target_reach = mesh.target_reach;
   LODESTONE_TRY(options.importance, vertex_importance(mesh, build.importance));
@@ -59,7 +59,7 @@ Result<SimplifyResult> simplify_mesh(const Scene& scene, std::size_t mesh, const
 }  // namespace
 
 bool writes_streams(const BuildOptions& options) {
-  return options.layout == FileLayout::Refined || (options.stream && options.layout == FileLayout::OneFile);
+  return is_by_compact_streams(options.layout) || (options.stream && options.layout == FileLayout::OneFile);
 }
 
 Result<std::vector<SimplifyResult>> simplify_scene(const Scene& scene, const BuildOptions& options,

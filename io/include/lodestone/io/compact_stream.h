@@ -17,6 +17,10 @@ namespace lodestone {
 /// The major version of compact streams, which those before it are not.
 inline constexpr std::uint16_t kCompactStreamVersion = 3;
 
+/// How fine a grid of positions may be: bits along each edge.
+inline constexpr int kLeastGridBits = 8;
+inline constexpr int kMostGridBits = 16;
+
 /// The cube whose grid positions are rounded to: equal for all meshes that must not come apart.
 struct CompactGrid {
   Vec3f origin;     ///< its least corner

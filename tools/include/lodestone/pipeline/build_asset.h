@@ -35,12 +35,12 @@ class BuildObserver {
 struct BuildResult {
   /// One level of the whole scene; lengths in world units.
   struct Level {
-    std::size_t face_count = 0;    ///< drawn: all instances counted
-    std::size_t vertex_count = 0;  ///< drawn
-    Deviation deviation;           ///< measured, whole scene to level as decoded and back
-    double deviation_bound = 0;    ///< what the streams promise for the level
-    double curvature_error = 0;    ///< the largest of all meshes, in the metric's own unit
-    std::uint64_t bytes = 0;
+    std::size_t face_count = 0;         ///< drawn: all instances counted
+    std::size_t vertex_count = 0;       ///< drawn
+    Deviation deviation;                ///< measured, whole scene to level as decoded and back
+    double deviation_bound = 0;         ///< what the streams promise for the level
+    double curvature_error = 0;         ///< the largest of all meshes, in the metric's own unit
+    std::uint64_t bytes = 0;            ///< of its geometry; of a stream alone those up to it
     std::optional<LevelTarget> target;  ///< in absolute numbers; none for the whole mesh
     bool met = true;
     std::string stopped_by;       ///< faces, error, epsilon, stuck; whole for level 0
@@ -106,8 +106,9 @@ struct BuildResult {
 /// Simplifies a scene's meshes, chooses and fits levels that answer the targets, and encodes and measures them.
 /// Deterministic, timings apart, for any number of threads (see `with_threads`).
 ///
-/// Errors: InvalidArgument, also for targets of several kinds and for names that nothing in the scene has; Cancelled;
-/// those of `simplify`, `encode_stream` and `encode_scene`. Pre: the scene has a mesh.
+/// Errors: InvalidArgument, also for targets of several kinds, for names that nothing in the scene has, and for bits of
+/// positions that streams do not have; Cancelled; those of `simplify`, `encode_stream`, `encode_compact` and
+/// `encode_scene`. Pre: the scene has a mesh.
 Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& options, BuildObserver& observer);
 
 /// The same, unobserved.

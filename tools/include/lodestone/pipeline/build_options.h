@@ -23,7 +23,13 @@ enum class FileLayout {
   OneFile,       ///< all levels in one file, by MSFT_lod
   FilePerLevel,  ///< a file for each level; none has a stream
   Refined,       ///< one file of the coarsest level and a compact stream of every other, up to the whole mesh
+  StreamAlone,   ///< a compact stream and nothing else, of a scene of one mesh; the levels are those it is measured at
 };
+
+/// Whether a layout's streams are compact ones.
+inline bool is_by_compact_streams(FileLayout layout) {
+  return layout == FileLayout::Refined || layout == FileLayout::StreamAlone;
+}
 
 /// SimplifyOptions::dense_rounds of compact streams: a fifth smaller than with rounds by cost alone, at hardly any
 /// error.
@@ -39,11 +45,13 @@ struct BuildOptions {
   /// the reach of morph targets.
   SimplifyOptions simplify;
   Importance importance;                       ///< of materials and nodes, by name
-  Placement placement = Placement::Optimised;  ///< of each level but the first
-  FileLayout layout = FileLayout::OneFile;     ///< one file, or one for each level
-  bool stream = true;                          ///< write each mesh's removal stream, with all levels in one file
-  bool strict = false;                         ///< stop before anything is encoded where a target cannot be met
-  bool keep_levels = false;                    ///< keep the levels as the files have them: see `BuildResult::decoded`
+  Placement placement = Placement::Optimised;  ///< of each level but the first; a stream alone has a subset
+  FileLayout layout = FileLayout::OneFile;
+  bool stream = true;        ///< write each mesh's removal stream, with all levels in one file
+  bool strict = false;       ///< stop before anything is encoded where a target cannot be met
+  bool keep_levels = false;  ///< keep the levels as the files have them: see `BuildResult::decoded`
+  /// Of a stream alone: what its faces' materials are called, by number of the primitive; empty: as those.
+  std::vector<Index> material_numbers;
   /// How it is stored. The build itself sets `keep_decoded` and, where levels are by error, `position_error`.
   /// With a file for each level, level i's `gltf_name` ends in "_LODi".
   AssetOptions storage;
