@@ -155,6 +155,71 @@ export function makeTube(spoil = (rows) => rows, material = {}) {
   return joinGlb(gltf, Buffer.concat(store.parts));
 }
 
+/** Parts of a document, joined to a .glb. */
+function join(store, parts) {
+  const gltf = { asset: { version: '2.0' }, scene: 0, ...parts, bufferViews: store.bufferViews, accessors: store.accessors, buffers: [{ byteLength: store.size }] };
+  return joinGlb(gltf, Buffer.concat(store.parts));
+}
+
+/** Returns the tube in two halves whose joints have different types, under bones that make it five times as large. */
+export function makeMixedTube() {
+  const store = new Store();
+  const whole = makePrimitive(store, (rows) => rows);
+  const [indices] = store.parts.slice(-1);
+  const half = (begin, end) => store.accessor(new Uint16Array(indices.buffer.slice(indices.byteOffset + begin, indices.byteOffset + end)), 'SCALAR');
+  const middle = indices.length / 2;
+  const narrow = store.parts[store.accessors[whole.attributes.JOINTS_0].bufferView];
+  const wide = store.accessor(Uint16Array.from(narrow), 'VEC4');
+  const moved = (y) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -y, 0, 1];
+  return join(store, {
+    scenes: [{ nodes: [0, 1] }],
+    nodes: [
+      { name: 'tube', mesh: 0, skin: 0 },
+      { name: 'lower', children: [2], scale: [5, 5, 5] },
+      { name: 'upper', translation: [0, joint, 0] },
+    ],
+    meshes: [{
+      name: 'tube',
+      primitives: [
+        { ...whole, targets: undefined, indices: half(0, middle), material: 0 },
+        { ...whole, targets: undefined, attributes: { ...whole.attributes, JOINTS_0: wide }, indices: half(middle, indices.length), material: 1 },
+      ],
+    }],
+    skins: [{ joints: [1, 2], inverseBindMatrices: store.floats([moved(0), moved(joint)], 'MAT4') }],
+    animations: [makeAnimation(store, 'Bend', 2, 'rotation', [0, 1], [[0, 0, 0, 1], [0, 0, Math.sin(0.5), Math.cos(0.5)]], 'VEC4')],
+    materials: [[0.9, 0.3, 0.2, 1], [0.3, 0.5, 0.9, 1]].map((baseColorFactor) => ({ pbrMetallicRoughness: { baseColorFactor, metallicFactor: 0 } })),
+  });
+}
+
+/** Returns a row of tubes from small to large, instances of one node, and two nodes beside that share the mesh. */
+export function makeCrowd() {
+  const store = new Store();
+  const { attributes: { POSITION, NORMAL, TEXCOORD_0 }, indices } = makePrimitive(store, (rows) => rows);
+  const places = [0, 1, 2, 3, 4];
+  return join(store, {
+    extensionsUsed: ['EXT_mesh_gpu_instancing'],
+    extensionsRequired: ['EXT_mesh_gpu_instancing'],
+    scenes: [{ nodes: [0, 1, 2] }],
+    nodes: [
+      {
+        mesh: 0,
+        extensions: {
+          EXT_mesh_gpu_instancing: {
+            attributes: {
+              TRANSLATION: store.floats(places.map((i) => [2 * i * i, 0, 0]), 'VEC3'),
+              SCALE: store.floats(places.map((i) => [1 + i, 1 + i, 1 + i]), 'VEC3'),
+            },
+          },
+        },
+      },
+      { mesh: 1, translation: [-2, 0, 3], scale: [0.5, 0.5, 0.5] },
+      { mesh: 1, translation: [6, 0, 12], scale: [2, 2, 2] },
+    ],
+    meshes: [0, 1].map((material) => ({ primitives: [{ attributes: { POSITION, NORMAL, TEXCOORD_0 }, indices, material }] })),
+    materials: [[0.9, 0.6, 0.2, 1], [0.3, 0.8, 0.5, 1]].map((baseColorFactor) => ({ pbrMetallicRoughness: { baseColorFactor, metallicFactor: 0 } })),
+  });
+}
+
 /** Returns the tube with normals and weights that are off, and a normal map without tangents. */
 export function makeFlawedTube() {
   return makeTube(flawed, { normalTexture: { index: 0 } });

@@ -1,4 +1,5 @@
 import type { Camera, Group, Material, Sphere } from 'three';
+import type { DetailBudget } from './budget.js';
 import type { Level, LodestoneStream, StreamOptions } from './index.js';
 
 /** `deviation` is that before the first `update`: Infinity where nothing is said, so that only the beginning is fetched. */
@@ -7,6 +8,10 @@ export interface MeshOptions extends StreamOptions {
   material?: Material | ((number: number) => Material);
   /** How many pixels of the picture the error of the level may cover. Default 1; 0: all detail. */
   pixelError?: number;
+  /** Says what is wanted in place of `pixelError`: see budget.d.ts. */
+  budget?: DetailBudget;
+  /** Called when the object has changed: for pages that render only then. */
+  onUpdate?: (mesh: LodestoneMesh) => void;
 }
 
 /**
@@ -23,6 +28,8 @@ export class LodestoneMesh extends Group {
   readonly level: Level;
   readonly stream: LodestoneStream;
 
+  /** How many pixels of a picture of so many pixels' height a unit of the object covers at most. */
+  pixelsPerUnit(camera: Camera, height: number): number;
   /** Says how the object is seen: by which camera, in a picture of how many pixels' height. */
   update(camera: Camera, height: number): void;
   /** Stops reading and frees what the object holds, but for its materials. */

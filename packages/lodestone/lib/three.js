@@ -1,7 +1,8 @@
 // A stream as an object of three.js, that refines and coarsens as the camera moves.
 import { Box3, BufferGeometry, Group, Mesh, MeshStandardMaterial, Sphere } from 'three';
 import { LodestoneStream } from './index.js';
-import { STEP, StreamBuffers, pixelsPerUnit } from './three_buffers.js';
+import { StreamBuffers, ballOf, pixelsPerUnit, viewOf } from './three_buffers.js';
+import { STEP, pixelsThrough } from './view.js';
 
 export { pixelsPerUnit };
 
@@ -12,20 +13,24 @@ export { pixelsPerUnit };
 export class LodestoneMesh extends Group {
   #stream;
   #buffers;
+  #budget;
   #wanted = Infinity;
 
   /**
    * Opens a stream; resolves when its first level can be drawn. `material`: a material, or a function that makes one of a
-   * group's number; none: a plain one. Other options are those of LodestoneStream.open.
+   * group's number; none: a plain one. `budget`: a DetailBudget that says what is wanted in place of `pixelError`. `onUpdate` is
+   * called when the object has changed. Other options are those of LodestoneStream.open.
    */
-  static async load(url, { material, pixelError = 1, deviation = Infinity, ...options } = {}) {
+  static async load(url, { material, pixelError = 1, deviation = Infinity, budget, onUpdate, ...options } = {}) {
     // How it is seen is not known yet: no more is fetched than its beginning.
-    const mesh = new LodestoneMesh(await LodestoneStream.open(url, { deviation, ...options }), material);
+    const mesh = new LodestoneMesh(await LodestoneStream.open(url, { deviation, ...(budget && { slack: 1 }), ...options }), material);
     mesh.pixelError = pixelError;
     mesh.#wanted = deviation;
     mesh.#apply(await mesh.#stream.next());
-    mesh.complete = mesh.#follow();
+    mesh.complete = mesh.#follow(onUpdate);
     mesh.complete.catch(() => {}); // who wants to know awaits it
+    mesh.#budget = budget;
+    budget?.add(mesh.#stream);
     return mesh;
   }
 
@@ -58,25 +63,28 @@ export class LodestoneMesh extends Group {
     return this.#stream;
   }
 
+  /** How many pixels of a picture of so many pixels' height a unit of the object covers at most. */
+  pixelsPerUnit(camera, height) {
+    this.updateWorldMatrix(true, false);
+    return pixelsThrough(viewOf(camera, height), this.matrixWorld.elements, ballOf(this.children[0].geometry.boundingSphere));
+  }
+
   /** Says how the object is seen: by which camera, in a picture of how many pixels' height. */
   update(camera, height) {
-    this.updateWorldMatrix(true, false);
-    const scale = this.matrixWorld.getMaxScaleOnAxis();
-    const wanted = this.pixelError / (scale * pixelsPerUnit(camera, height, this.#worldSphere(scale)));
-    if (!(wanted >= 0)) return; // seen from within, at no size
+    const pixels = this.pixelsPerUnit(camera, height);
+    if (!(pixels > 0)) return; // at no size
+    if (this.#budget) return void this.#budget.see(this.#stream, pixels);
+    const wanted = this.pixelError / pixels;
     if (wanted <= this.#wanted * STEP && wanted * STEP >= this.#wanted) return;
     this.#wanted = wanted;
     this.#stream.want(wanted);
   }
 
-  /** A sphere around the object as it is and will be, in the world. */
-  #worldSphere(scale) {
-    const { center, radius } = this.children[0].geometry.boundingSphere;
-    return new Sphere(center.clone().applyMatrix4(this.matrixWorld), radius * scale);
-  }
-
-  async #follow() {
-    for await (const update of this.#stream) this.#apply(update);
+  async #follow(onUpdate) {
+    for await (const update of this.#stream) {
+      this.#apply(update);
+      onUpdate?.(this);
+    }
   }
 
   #apply(update) {
@@ -92,6 +100,7 @@ export class LodestoneMesh extends Group {
   /** Stops reading and frees what the object holds, but for its materials. */
   dispose() {
     this.#stream.close();
+    this.#budget?.remove(this.#stream);
     for (const { geometry } of this.children) geometry.dispose();
   }
 }

@@ -1,9 +1,9 @@
 // Buffers of three.js that a stream's updates are written to: geometries, one for each of its groups, that share their
 // vertices.
 import { BufferAttribute, Vector3 } from 'three';
-
-/** How much what is wanted must change before it is said again. */
-export const STEP = 1.05;
+import { GrowingArray } from './growing_array.js';
+import { targetOf } from './refined_mesh.js';
+import { pixelsAt } from './view.js';
 
 const NAMES = {
   POSITION: 'position',
@@ -20,44 +20,38 @@ const NAMES = {
 
 /** A buffer that grows: three.js uploads what `write` is given and no more, but for when it grows. */
 class GrowingAttribute {
+  #array;
+
   constructor(itemSize, normalized, likely) {
-    this.itemSize = itemSize;
+    this.#array = new GrowingArray(itemSize, likely);
     this.normalized = normalized;
-    this.likely = likely; // elements that it comes to in the end, as far as is known
     this.attribute = undefined;
+  }
+
+  set likely(count) {
+    this.#array.likely = count;
   }
 
   /** Writes numbers at an element; returns whether the attribute is another one now. */
   write(begin, values) {
-    const end = begin + values.length / this.itemSize;
-    const grows = !this.attribute || end > this.attribute.count;
-    if (grows) this.#grow(end, values.constructor);
-    this.attribute.array.set(values, begin * this.itemSize);
-    if (!grows && values.length > 0) this.attribute.addUpdateRange(begin * this.itemSize, values.length);
+    const { itemSize } = this.#array;
+    const grows = this.#array.write(begin, values);
+    if (grows) this.attribute = new BufferAttribute(this.#array.array, itemSize, this.normalized);
+    else if (values.length > 0) this.attribute.addUpdateRange(begin * itemSize, values.length);
     this.attribute.needsUpdate = true;
     return grows;
-  }
-
-  #grow(end, Type) {
-    const old = this.attribute;
-    // What a file says that it comes to is believed no further than twice what is there.
-    const count = Math.max(end, Math.min(this.likely, 2 * Math.max(old?.count ?? 0, end)));
-    const array = new Type(count * this.itemSize);
-    if (old) array.set(old.array);
-    this.attribute = new BufferAttribute(array, this.itemSize, this.normalized);
   }
 }
 
 /** What a stream's attribute is called in a geometry. */
-export const nameOf = (name) => NAMES[name] ?? name.toLowerCase();
-
-const TARGET = /^TARGET_(\d+):(POSITION|NORMAL|COLOR_0)$/;
+const nameOf = (name) => NAMES[name] ?? name.toLowerCase();
 
 /** The buffers of all groups. */
 export class StreamBuffers {
   #stream;
   #attributes = []; // { name, growing, target }, shared by all groups
   #indices = []; // by group
+  #wedges = 0;
 
   constructor(stream) {
     this.#stream = stream;
@@ -66,9 +60,8 @@ export class StreamBuffers {
       this.#attributes.push({ name, target, growing: new GrowingAttribute(itemSize, normalized, whole.vertexCount) });
     add('position', 3, false);
     for (const { name, componentCount, normalized } of stream.attributes) {
-      const target = TARGET.exec(name);
-      if (target) add(nameOf(target[2]), componentCount, normalized, Number(target[1]));
-      else add(nameOf(name), componentCount, normalized);
+      const morph = targetOf(name);
+      add(nameOf(morph?.semantic ?? name), componentCount, normalized, morph?.target);
     }
     this.#indices = stream.groups.map(() => new GrowingAttribute(1, false, 3 * whole.faceCount));
   }
@@ -82,6 +75,7 @@ export class StreamBuffers {
   write({ wedges, groups, normals }) {
     let grown = false;
     if (wedges.end > wedges.begin) {
+      this.#wedges = wedges.end;
       [wedges.positions, ...wedges.attributes].forEach((values, i) => {
         grown = this.#attributes[i].growing.write(wedges.begin, values) || grown;
       });
@@ -104,24 +98,27 @@ export class StreamBuffers {
     return entry.growing.write(0, normals);
   }
 
-  /** Gives a geometry a group's buffers, those that `wanted(name)` of. Those before are let go of. */
-  put(geometry, group, wanted = () => true) {
+  /** Gives a geometry a group's buffers: of attributes those that `own` says, one after the other. Those before are let go of. */
+  put(geometry, group, own) {
     geometry.dispose();
-    for (const { name, growing, target } of this.#attributes) {
-      if (!growing.attribute || !wanted(name)) continue;
+    this.#attributes.forEach(({ name, growing, target }, i) => {
+      // The first are positions; behind the stream's own come normals that have been worked out.
+      if (!growing.attribute || own?.[i - 1] === false) return;
       if (target === undefined) geometry.setAttribute(name, growing.attribute);
       else (geometry.morphAttributes[name] ??= [])[target] = growing.attribute;
-    }
+    });
     const { attribute } = this.#indices[group];
     if (attribute) geometry.setIndex(attribute);
   }
 
   /**
    * Sets what a geometry draws and where it lies: what is there, as far around it as what is to come may lie, and `box`, where
-   * targets may move it.
+   * targets may move it. `userData.lodestone` says how many vertices have arrived, which are more than the level has where
+   * that has been coarsened.
    */
   bound(geometry, count, { low, high }, box) {
     geometry.setDrawRange(0, count);
+    geometry.userData.lodestone = { wedgeCount: this.#wedges };
     const farthest = this.#stream.chunks[this.#stream.chunksReady - 1].deviation;
     geometry.boundingBox.set(new Vector3(...low), new Vector3(...high)).expandByScalar(farthest);
     if (box) geometry.boundingBox.union(box);
@@ -129,11 +126,15 @@ export class StreamBuffers {
   }
 }
 
-/** How many pixels a unit of the world covers at a sphere's nearest point: see pixels_per_unit in detail_choice.h. */
-export function pixelsPerUnit(camera, height, sphere) {
-  const [scale, isOrthographic] = [camera.projectionMatrix.elements[5], camera.projectionMatrix.elements[15] === 1];
-  if (isOrthographic) return (height * scale) / 2;
-  const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
-  const distance = eye.distanceTo(sphere.center) - sphere.radius;
-  return distance > 0 ? (height * scale) / (2 * distance) : Infinity;
+/** How a camera sees, in a picture of so many pixels' height: see pixelsAt. */
+export function viewOf(camera, height) {
+  const { elements } = camera.projectionMatrix;
+  const [x, y, z] = camera.matrixWorld.elements.slice(12, 15);
+  return { scale: elements[5], isOrthographic: elements[15] === 1, height, eye: [x, y, z], near: camera.near ?? 0 };
 }
+
+/** A sphere of three.js as numbers. */
+export const ballOf = ({ center, radius }) => ({ center: center.toArray(), radius });
+
+/** How many pixels a unit of the world covers at a sphere's nearest point; Infinity where that is seen from within. */
+export const pixelsPerUnit = (camera, height, sphere) => pixelsAt({ ...viewOf(camera, height), near: 0 }, ballOf(sphere));

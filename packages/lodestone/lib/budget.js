@@ -1,0 +1,226 @@
+// Several meshes that share what may be drawn and fetched: all have the same error in pixels, the smallest for which there is
+// enough, and the next bytes are fetched for those that have the greatest.
+import { STEP } from './view.js';
+
+const PATIENCE = 300; // milliseconds for which what was seen counts
+const SETTLED = 150; // milliseconds after which a level is what comes of what is wanted
+const CLOSE = 1.02; // levels whose faces differ by less are known well enough
+const CLOSEST = 1.005; // deviations that differ by less are the same
+
+/** How many faces a mesh has at each deviation, as far as is known: at the ends of its chunks, and where it has been. */
+class Curve {
+  #known; // by falling deviation, faces rising
+
+  constructor(levels) {
+    this.#known = levels.map(({ deviation, faceCount }) => ({ deviation, faceCount }));
+    const last = this.#known.at(-1);
+    const before = this.#known.at(-2);
+    // Faces are about the inverse of the deviation: below that there is the whole.
+    if (last.deviation === 0 && before) last.deviation = before.deviation * (before.faceCount / last.faceCount);
+  }
+
+  /** So many faces come of it where levels may deviate by so much. Between two levels there is none: that is a step. */
+  learn(deviation, faceCount) {
+    const known = this.#known;
+    const at = known.findIndex((level) => level.deviation < deviation);
+    const [before, after] = [known[at - 1], known[at]];
+    if (!before || !after || faceCount > after.faceCount || faceCount < before.faceCount * CLOSE) return;
+    if (faceCount * CLOSE > after.faceCount && deviation < after.deviation * CLOSE) return;
+    const isStep = faceCount === after.faceCount && faceCount === known[at + 1]?.faceCount;
+    known.splice(at, isStep ? 1 : 0, { deviation, faceCount });
+  }
+
+  get coarsest() {
+    return this.#known[0].deviation;
+  }
+
+  get finest() {
+    return this.#known.at(-1).deviation;
+  }
+
+  /** The faces of a level that deviates by so much. In between they are thought to grow evenly while it falls by halves: too many. */
+  faces(deviation) {
+    const known = this.#known;
+    if (!(deviation < known[0].deviation)) return known[0].faceCount;
+    let [low, high] = [0, known.length - 1];
+    if (deviation <= known[high].deviation) return known[high].faceCount;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (known[middle].deviation > deviation) low = middle;
+      else high = middle;
+    }
+    const [a, b] = [known[low], known[high]];
+    const share = Math.log(a.deviation / deviation) / Math.log(a.deviation / b.deviation);
+    return a.faceCount + share * (b.faceCount - a.faceCount);
+  }
+}
+
+/** What the budget knows of a mesh. */
+class Entry {
+  constructor(mesh) {
+    this.mesh = mesh;
+    this.pixels = 0; // a unit of the mesh covers
+    this.places = 1; // at which it is drawn
+    this.next = undefined; // what has been seen since the last update, { pixels, places }
+    this.seen = -Infinity; // when
+    this.wanted = undefined;
+    this.curve = undefined;
+    this.level = undefined; // that was drawn last
+    this.since = -Infinity; // when it, or what is wanted, became another
+  }
+
+  see(pixels, places) {
+    this.next ??= { pixels: 0, places: 0 };
+    this.next.pixels = Math.max(this.next.pixels, pixels);
+    this.next.places += places;
+  }
+
+  /** What was seen since the last time counts; what was not for a while is far away. */
+  refresh(now) {
+    if (this.next) {
+      Object.assign(this, this.next);
+      this.seen = now;
+    } else if (now - this.seen > PATIENCE) {
+      this.pixels = 0;
+    }
+    this.next = undefined;
+    const { chunks } = this.mesh;
+    if (chunks) this.curve ??= new Curve(chunks);
+    this.#learn(now);
+  }
+
+  #learn(now) {
+    const { level } = this.mesh;
+    if (!this.curve || !level) return;
+    if (level.faceCount !== this.level?.faceCount) this.since = now;
+    this.level = level;
+    this.curve.learn(level.deviation, level.faceCount);
+    // It has had the time to get as coarse as it may.
+    if (now - this.since > SETTLED && level.deviation < this.wanted) this.curve.learn(this.wanted, level.faceCount);
+  }
+
+  /** The deviation of what has arrived. */
+  get arrived() {
+    const { chunks, chunksReady, shown } = this.mesh;
+    return chunks && chunksReady > 0 ? chunks[chunksReady - 1].deviation : (shown?.deviation ?? Infinity);
+  }
+
+  get nextChunk() {
+    return this.mesh.chunks?.[this.mesh.chunksReady];
+  }
+
+  facesNow() {
+    return this.places * (this.mesh.level?.faceCount ?? this.mesh.shown?.faceCount ?? 0);
+  }
+
+  facesAt(error) {
+    if (!this.curve) return this.places * (this.mesh.shown?.faceCount ?? 0);
+    return this.places * this.curve.faces(this.pixels === 0 ? Infinity : error / this.pixels);
+  }
+
+  /** A little finer is not worth the work; a little coarser is, where there are too many triangles. */
+  want(deviation, now) {
+    const same = this.wanted === deviation || (deviation <= this.wanted * CLOSEST && deviation * STEP >= this.wanted);
+    if (same && (deviation > 0) === (this.wanted > 0)) return;
+    this.wanted = deviation;
+    this.since = now;
+    this.mesh.want(deviation);
+  }
+}
+
+export class DetailBudget {
+  #entries = new Map();
+  #error = Infinity;
+
+  constructor({ triangles = Infinity, bytes = Infinity, pixelError = 1, atOnce = 2 } = {}) {
+    this.triangles = triangles;
+    this.bytes = bytes;
+    this.pixelError = pixelError;
+    this.atOnce = atOnce;
+  }
+
+  add(mesh) {
+    if (!this.#entries.has(mesh)) this.#entries.set(mesh, new Entry(mesh));
+  }
+
+  remove(mesh) {
+    this.#entries.delete(mesh);
+  }
+
+  see(mesh, pixels, places = 1) {
+    if (pixels > 0) this.#entries.get(mesh)?.see(pixels, places);
+  }
+
+  get error() {
+    return this.#error;
+  }
+
+  get drawn() {
+    return this.#sum((entry) => entry.facesNow());
+  }
+
+  get fetched() {
+    return this.#sum(({ mesh }) => mesh.bytes ?? 0);
+  }
+
+  #sum(count) {
+    let sum = 0;
+    for (const entry of this.#entries.values()) sum += count(entry);
+    return sum;
+  }
+
+  update(now = performance.now()) {
+    for (const entry of this.#entries.values()) entry.refresh(now);
+    this.#error = this.#chooseError();
+    const allowed = this.#chooseNext();
+    for (const entry of this.#entries.values()) {
+      const deviation = entry.pixels === 0 ? Infinity : this.#error / entry.pixels;
+      // Who is not next has what has arrived.
+      entry.want(Math.max(deviation, allowed.get(entry) ?? entry.arrived), now);
+    }
+  }
+
+  #faces(error) {
+    return this.#sum((entry) => entry.facesAt(error));
+  }
+
+  /** The smallest error in pixels for which there are triangles enough. */
+  #chooseError() {
+    if (this.#faces(this.pixelError) <= this.triangles) return this.pixelError;
+    let low = Infinity;
+    let high = this.pixelError;
+    for (const { pixels, curve } of this.#entries.values()) {
+      if (!curve || pixels === 0) continue;
+      low = Math.min(low, pixels * curve.finest);
+      high = Math.max(high, pixels * curve.coarsest);
+    }
+    low = Math.max(low, this.pixelError);
+    if (!(low < high)) return high;
+    for (let i = 0; i < 40 && high > low * 1.001; ++i) {
+      const middle = low > 0 ? Math.sqrt(low * high) : high / 2;
+      if (this.#faces(middle) <= this.triangles) high = middle;
+      else low = middle;
+    }
+    return high;
+  }
+
+  /** Those whose next chunk may be fetched, and how far they may be refined with it. */
+  #chooseNext() {
+    const waiting = [];
+    for (const entry of this.#entries.values())
+      if (entry.pixels * entry.arrived > this.#error && !(entry.mesh.chunks && !entry.nextChunk)) waiting.push(entry);
+    waiting.sort((a, b) => b.pixels * b.arrived - a.pixels * a.arrived);
+    const allowed = new Map();
+    let bytes = this.fetched;
+    for (const entry of waiting) {
+      if (allowed.size === this.atOnce) break;
+      const chunk = entry.nextChunk;
+      const more = chunk ? chunk.byteEnd - chunk.byteBegin : 0;
+      if (bytes + more > this.bytes) continue;
+      bytes += more;
+      // Before it is opened nothing is known of its chunks: its first are fetched.
+      allowed.set(entry, chunk ? chunk.deviation : entry.arrived / STEP ** 2);
+    }
+    return allowed;
+  }
+}

@@ -1,0 +1,147 @@
+// Draws a glTF that refines itself by lodestone's extension for Babylon.js's loader, beside the one that it was made of.
+import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
+import { Engine } from '@babylonjs/core/Engines/engine.js';
+import { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
+import { HemisphericLight } from '@babylonjs/core/Lights/hemisphericLight.js';
+import { ImportMeshAsync } from '@babylonjs/core/Loading/sceneLoader.js';
+import { Color4 } from '@babylonjs/core/Maths/math.color.js';
+import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { DracoDecoder } from '@babylonjs/core/Meshes/Compression/dracoDecoder.js';
+import { MorphTargetManager } from '@babylonjs/core/Morph/morphTargetManager.js';
+import { Scene } from '@babylonjs/core/scene.js';
+import '@babylonjs/core/Culling/ray.js';
+import '@babylonjs/core/Animations/animatable.js';
+import '@babylonjs/loaders/glTF/2.0/index.js';
+import { refinementOf, registerLodestone } from 'lodestone/babylon';
+import { similarity } from './ssim.js';
+
+const SIZE = 512;
+
+// Its own decoder comes from the network; three.js ships the same decoder in its package.
+const decoder = '/node_modules/three/examples/jsm/libs/draco/gltf/';
+DracoDecoder.DefaultConfiguration = {
+  wasmUrl: `${decoder}draco_wasm_wrapper.js`,
+  wasmBinaryUrl: `${decoder}draco_decoder.wasm`,
+  fallbackUrl: `${decoder}draco_decoder.js`,
+};
+
+const engine = new Engine(document.getElementById('canvas'), true, { preserveDrawingBuffer: true });
+const scene = new Scene(engine);
+scene.clearColor = new Color4(0.44, 0.53, 0.66, 1);
+new DirectionalLight('sun', new Vector3(-1, -2, -3), scene).intensity = 2.5;
+new HemisphericLight('sky', new Vector3(0, 1, 0), scene).intensity = 0.8;
+const camera = new FreeCamera('camera', Vector3.Zero(), scene);
+camera.fov = (35 * Math.PI) / 180;
+
+let loaded;
+let refinement;
+let sphere;
+let updates = 0;
+registerLodestone({ onUpdate: () => ++updates });
+
+/** Loads a file; with the extension where `refines`. */
+window.openFile = async (url, compression, refines) => {
+  window.closeFile();
+  const pluginOptions = { gltf: { extensionOptions: { LODESTONE_removal_stream: { enabled: refines } } } };
+  loaded = await ImportMeshAsync(url, scene, { pluginOptions });
+  const root = loaded.meshes[0];
+  refinement = refinementOf(root);
+  for (const group of loaded.animationGroups) group.stop();
+  loaded.animationGroups[0]?.start(true);
+  loaded.animationGroups[0]?.pause();
+  window.pose(0);
+  for (const skeleton of loaded.skeletons) skeleton.prepare(true);
+  for (const mesh of loaded.meshes) mesh.refreshBoundingInfo({ applySkeleton: true, applyMorph: true });
+  if (!sphere) {
+    const { min, max } = root.getHierarchyBoundingVectors();
+    sphere = { center: Vector3.Center(min, max), radius: Vector3.Distance(min, max) / 2 };
+  }
+  [camera.minZ, camera.maxZ] = [sphere.radius / 100, sphere.radius * 1000];
+  window.moveTo(3.4);
+  await scene.whenReadyAsync();
+  return refinement?.meshes.length ?? 0;
+};
+
+window.closeFile = () => {
+  const closed = refinement;
+  for (const group of loaded?.animationGroups ?? []) group.dispose();
+  for (const skeleton of loaded?.skeletons ?? []) skeleton.dispose();
+  loaded?.meshes[0].dispose(false, true);
+  loaded = undefined;
+  refinement = undefined;
+  scene.render();
+  if (closed && !closed.meshes.every(({ isClosed }) => isClosed)) throw new Error('it is disposed of, and its streams are read on');
+};
+
+/** Forgets where the last file lay. */
+window.forget = () => {
+  sphere = undefined;
+};
+
+window.moveTo = (radii) => {
+  camera.position = sphere.center.add(new Vector3(0.5, 0.4, 1).normalize().scale(sphere.radius * radii));
+  camera.setTarget(sphere.center);
+};
+
+window.pose = (time) => loaded.animationGroups[0]?.goToFrame(time * 60);
+
+window.setPixelError = (pixels) => {
+  refinement.pixelError = pixels;
+};
+
+window.drawFrame = () => {
+  scene.render();
+  const meshes = refinement?.meshes ?? [];
+  return {
+    drawn: scene.getActiveIndices() / 3,
+    bytes: meshes.reduce((sum, mesh) => sum + mesh.bytes, 0),
+    refined: meshes.filter((mesh) => mesh.level).length,
+    worst: Math.max(0, ...meshes.map((mesh) => mesh.level?.deviation ?? 0)),
+  };
+};
+
+let kept;
+
+/** The picture, with where it is none of the background. */
+async function picture() {
+  scene.render();
+  const rgba = await engine.readPixels(0, 0, SIZE, SIZE);
+  const covered = Uint8Array.from({ length: SIZE * SIZE }, (_, i) =>
+    [0, 1, 2].some((channel) => rgba[4 * i + channel] !== rgba[channel]) ? 1 : 0);
+  return { rgba: new Uint8Array(rgba.buffer.slice(0)), covered };
+}
+
+/** Keeps the picture for comparison. */
+window.keepPicture = async () => {
+  kept = await picture();
+};
+window.likeKept = async () => similarity(kept, await picture(), SIZE, SIZE);
+
+/** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
+window.hit = () => {
+  const found = scene.pick(SIZE / 2, SIZE / 2);
+  return found?.hit ? found.distance : null;
+};
+
+window.finish = async () => {
+  window.setPixelError(0);
+  window.drawFrame();
+  await Promise.all(refinement.meshes.map((mesh) => mesh.complete));
+  return window.settle(10);
+};
+
+/** Draws frames until nothing changes for a while. */
+window.settle = async (patience = 60) => {
+  let state = window.drawFrame();
+  let known = updates;
+  for (let still = 0; still < patience; ) {
+    await new Promise((resolve) => setTimeout(resolve, 10));
+    const next = window.drawFrame();
+    still = updates === known && next.bytes === state.bytes ? still + 1 : 0;
+    known = updates;
+    state = next;
+  }
+  return state;
+};
+
+window.ready = true;

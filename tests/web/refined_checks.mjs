@@ -1,0 +1,145 @@
+// Files of `build --profile stream` in a page that refines them: by how they are seen, and in the end they look like what they
+// were made of, in any pose.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { basename, extname, join } from 'node:path';
+import { openPage } from './browser.mjs';
+import { readDocument, trianglesOfScene } from './glb.mjs';
+import { makeCrowd, makeMixedTube, makeTube } from './made.mjs';
+import { Log, openSite, readOptions, repository, skip } from './suite.mjs';
+
+const leastLikeness = 0.98; // of 1: what differs is rounded to the stream's grids
+const leastAtPixel = 0.97; // of 1: no surface lies farther off than a pixel
+
+const options = readOptions();
+if (!existsSync(join(options.package, 'lib', 'lodestone.wasm'))) {
+  console.log(`SKIPPED: no ${options.package}: run ./run web, which needs Emscripten`);
+  process.exit(77);
+}
+
+/** The models that are there, or those of them that are named: a .glb has its streams in it, a .gltf beside it. */
+function subjects(folder) {
+  const made = (name, bytes) => {
+    const path = join(folder, `${name}-input.glb`);
+    writeFileSync(path, bytes);
+    return path;
+  };
+  const wanted = [
+    [join(repository, 'demo', 'suzi.glb'), 'glb'],
+    [made('tube', makeTube()), 'gltf'],
+    [made('mixed', makeMixedTube()), 'glb'],
+    [made('crowd', makeCrowd()), 'gltf'],
+    [join(options.models, 'gltf', 'FlightHelmet', 'FlightHelmet.gltf'), 'gltf'],
+    [join(options.models, 'skin-morph', 'Knight.glb'), 'glb'],
+    [join(options.models, 'skin-morph', 'MorphStressTest.gltf'), 'glb'],
+  ];
+  return wanted.flatMap(([model, format]) => {
+    if (!existsSync(model)) return skip(model) ?? [];
+    const name = basename(model, extname(model));
+    if (options.files.length > 0 && !options.files.includes(name)) return [];
+    const path = join(folder, name, `${name}.${format}`);
+    mkdirSync(join(folder, name), { recursive: true });
+    execFileSync(options.program, ['build', model, '-o', path, '-q', '--profile', 'stream', '--effort', '3'],
+      { stdio: ['ignore', 'ignore', 'ignore'] });
+    return [{ name, model, path }];
+  });
+}
+
+function checksOf(site, page, { name, model, path }, prefix) {
+  const picture = (label) => page.page.screenshot({ path: join(options.output, `${prefix}-${name}-${label}.png`) });
+  const settle = () => page.ask(() => window.settle());
+  let whole;
+  let shown;
+  return {
+    'opens with what every viewer shows': async () => {
+      await page.ask(() => window.forget());
+      await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
+      whole = await settle();
+      await page.ask(() => window.keepPicture());
+      await picture('original');
+      assert.equal(await page.ask((url) => window.openFile(url, 'draco', true), site.url(model)), 0);
+      assert.equal((await settle()).drawn, whole.drawn, 'an ordinary file is another with the plugin');
+      const meshes = await page.ask((url) => window.openFile(url, 'draco', true), site.url(path));
+      assert.ok(meshes > 0);
+      await page.ask(() => {
+        window.setPixelError(1e9);
+        window.drawFrame();
+      });
+      shown = await settle();
+      assert.equal(shown.bytes, 0, 'what nobody asked for is fetched');
+      assert.equal(shown.refined, 0);
+      [shown.triangles] = trianglesOfScene(await readDocument(path));
+      await picture('first');
+      return `${meshes} meshes, ${shown.drawn} of ${whole.drawn} triangles drawn`;
+    },
+    'refines to a pixel': async () => {
+      await page.ask(() => window.setPixelError(1));
+      const state = await settle();
+      assert.ok(state.refined > 0 && state.drawn > shown.drawn, `${state.drawn} triangles`);
+      await picture('pixel');
+      const likeness = await page.ask(() => window.likeKept());
+      assert.ok(likeness >= leastAtPixel, `similarity ${likeness.toFixed(4)}`);
+      return `${state.drawn} triangles, ${state.bytes} bytes, similarity ${likeness.toFixed(4)}`;
+    },
+    'is coarser from afar': async () => {
+      const near = await settle();
+      await page.ask(() => window.moveTo(40));
+      const far = await settle();
+      await page.ask(() => window.moveTo(3.4));
+      const again = await settle();
+      assert.ok(far.drawn < 0.7 * near.drawn, `${far.drawn} of ${near.drawn} triangles`);
+      // More may have arrived since, by which it is known better where it lies.
+      assert.ok(again.drawn >= 0.6 * near.drawn && again.drawn > 1.2 * far.drawn, `${again.drawn} of ${near.drawn} triangles again`);
+      return `${far.drawn} of ${near.drawn} triangles`;
+    },
+    'ends as the original': async () => {
+      const state = await page.ask(() => window.finish());
+      assert.equal(state.drawn, whole.drawn);
+      const likeness = await page.ask(() => window.likeKept());
+      await picture('whole');
+      assert.ok(likeness >= leastLikeness, `similarity ${likeness.toFixed(4)}`);
+      return `${state.drawn} triangles, ${state.bytes} bytes, similarity ${likeness.toFixed(4)}`;
+    },
+    'is hit by rays': async () => {
+      const refined = await page.ask(() => window.hit());
+      await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
+      const original = await page.ask(() => window.hit());
+      assert.equal(refined === null, original === null);
+      assert.ok(original === null || Math.abs(refined - original) < 0.01 * original, `${refined} and ${original}`);
+      return original === null ? 'passes both' : refined.toPrecision(4);
+    },
+    'moves as the original': async () => {
+      for (const time of [0.4, 1.1]) {
+        await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
+        await page.ask((at) => {
+          window.pose(at);
+          window.keepPicture();
+        }, time);
+        await page.ask((url) => window.openFile(url, 'draco', true), site.url(path));
+        await page.ask(() => window.finish());
+        const likeness = await page.ask((at) => {
+          window.pose(at);
+          return window.likeKept();
+        }, time);
+        await picture(`pose-${time}`);
+        assert.ok(likeness >= leastLikeness, `similarity ${likeness.toFixed(4)} at ${time} s`);
+      }
+      await page.ask(() => window.closeFile());
+      return 'two poses';
+    },
+  };
+}
+
+/** Checks all models in a page of `pages`; `prefix` is of the names of its pictures. */
+export async function checkRefined(name, prefix) {
+  const folder = join(options.output, prefix);
+  mkdirSync(folder, { recursive: true });
+  const log = new Log();
+  const found = subjects(folder);
+  const site = await openSite({ ...options, more: { package: options.package } });
+  const page = await openPage(site.browser, `${site.address}/pages/${name}`);
+  for (const subject of found) await log.run(subject.name, checksOf(site, page, subject, prefix));
+  await site.close();
+  log.close();
+}
