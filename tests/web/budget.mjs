@@ -21,9 +21,11 @@ class Model {
   bytes = 0;
   wanted = Infinity;
   #power;
+  #step; // by which levels differ, in faces
 
-  constructor(faceCount, { size = 1, power = 1 } = {}) {
+  constructor(faceCount, { size = 1, power = 1, step = 1 } = {}) {
     this.#power = power;
+    this.#step = step;
     const shares = [0.01, 0.03, 0.1, 0.3, 1];
     this.chunks = shares.map((share, i) => ({
       byteBegin: i === 0 ? 0 : 8 * faceCount * shares[i - 1], byteEnd: 8 * faceCount * share,
@@ -46,7 +48,8 @@ class Model {
       this.bytes = this.chunks[ready].byteEnd;
     }
     const arrived = this.chunks[this.chunksReady - 1];
-    const share = Math.min(1, Math.max(0.01, (this.wanted / (this.size * 0.001)) ** -this.#power));
+    let share = Math.min(1, Math.max(0.01, (this.wanted / (this.size * 0.001)) ** -this.#power));
+    if (this.#step > 1) share = Math.min(1, 0.01 * this.#step ** Math.ceil(Math.log(share / 0.01) / Math.log(this.#step) - 1e-9));
     const whole = this.wanted < 0.001 * this.size || this.wanted === 0;
     const faces = whole ? this.faceCount : Math.ceil(share * this.faceCount);
     this.level = faces >= arrived.faceCount ? { ...arrived } : { faceCount: faces, deviation: this.size * 0.001 * share ** (-1 / this.#power) };
@@ -56,8 +59,8 @@ class Model {
 
 const errorOf = ({ model, pixels }) => pixels * model.level.deviation;
 
-/** Makes frames until nothing arrives; returns in which order chunks came, with the errors of all before each. */
-function settle(budget, seen, frames = 60) {
+/** Makes frames until all is settled; returns in which order chunks came, with the errors of all before each. */
+function settle(budget, seen, frames = 300) {
   const order = [];
   for (let frame = 0; frame < frames; ++frame) {
     for (const { model, pixels, places = 1 } of seen) budget.see(model, pixels, places);
@@ -90,6 +93,16 @@ const checksOfModels = {
       assert.ok(drawn <= Math.max(triangles, least), `${drawn} of ${triangles}`);
       assert.ok(triangles < least || drawn > 0.85 * triangles, `${drawn} of ${triangles}`);
       return (drawn / triangles).toFixed(2);
+    });
+    return used.join(' ');
+  },
+  'is held where levels lie far apart': () => {
+    const used = [3_000, 20_000, 60_000, 100_000].map((triangles) => {
+      const budget = new DetailBudget({ triangles, pixelError: 0 });
+      const seen = crowd(budget, LIST.slice(0, 2).map(([faceCount, pixels], i) => [faceCount, pixels, { step: [1.9, 1.4][i] }]));
+      settle(budget, seen);
+      assert.ok(budget.drawn <= triangles && budget.drawn > 0.4 * triangles, `${budget.drawn} of ${triangles}`);
+      return (budget.drawn / triangles).toFixed(2);
     });
     return used.join(' ');
   },

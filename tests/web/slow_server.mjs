@@ -1,5 +1,6 @@
 // A server of one folder that sends slowly, in pieces, holds back, drops connections and answers ranges wrongly, as it is
 // told: for what reads while bytes arrive.
+import { EventEmitter } from 'node:events';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { join, normalize, sep } from 'node:path';
@@ -7,11 +8,12 @@ import { join, normalize, sep } from 'node:path';
 /**
  * Starts it. `behaviour` may be changed at any time: ranges 'yes' | 'no' | 'wrong' | 'first', which is the first half whatever
  * is asked for; piece, bytes sent at once; rate, bytes a second; limit, bytes of a file before which it stops; drop, bytes
- * after which each connection breaks.
+ * after which each connection breaks; swap, whether every other answer waits for the one after it, 200 ms at most.
  */
 export async function serveSlowly(folder, behaviour) {
   const asked = [];
   const waiting = new Set();
+  const answered = new EventEmitter();
   const isHeld = (at) => at >= (behaviour.limit ?? Infinity);
   const moved = () => new Promise((resolve) => waiting.add(resolve));
 
@@ -34,6 +36,8 @@ export async function serveSlowly(folder, behaviour) {
       'access-control-expose-headers': 'content-range',
       ...(match && { 'content-range': `bytes ${first}-${end - 1}/${bytes.length}` }),
     });
+    if (behaviour.swap && asked.length % 2 === 1)
+      await Promise.race([new Promise((resolve) => answered.once('answer', resolve)), new Promise((resolve) => setTimeout(resolve, 200))]);
     const { drop = Infinity } = behaviour;
     for (let at = first; at < end && !response.destroyed; ) {
       while (isHeld(at) && !response.destroyed) await Promise.race([moved(), new Promise((resolve) => response.once('close', resolve))]);
@@ -44,6 +48,7 @@ export async function serveSlowly(folder, behaviour) {
       await new Promise((resolve) => setTimeout(resolve, behaviour.rate ? (1000 * length) / behaviour.rate : 0));
     }
     response.end();
+    answered.emit('answer');
   }
 
   const server = createServer((request, response) => respond(request, response).catch(() => response.destroy()));

@@ -5,7 +5,6 @@ import { STEP } from './view.js';
 const PATIENCE = 300; // milliseconds for which what was seen counts
 const SETTLED = 150; // milliseconds after which a level is what comes of what is wanted
 const CLOSE = 1.02; // levels whose faces differ by less are known well enough
-const CLOSEST = 1.005; // deviations that differ by less are the same
 
 /** How many faces a mesh has at each deviation, as far as is known: at the ends of its chunks, and where it has been. */
 class Curve {
@@ -19,15 +18,16 @@ class Curve {
     if (last.deviation === 0 && before) last.deviation = before.deviation * (before.faceCount / last.faceCount);
   }
 
-  /** So many faces come of it where levels may deviate by so much. Between two levels there is none: that is a step. */
-  learn(deviation, faceCount) {
+  /** So many faces come of it where levels may deviate by so much, and by up to `farther` times as much: there is none in between. */
+  learn(deviation, faceCount, farther = 1) {
     const known = this.#known;
     const at = known.findIndex((level) => level.deviation < deviation);
     const [before, after] = [known[at - 1], known[at]];
     if (!before || !after || faceCount > after.faceCount || faceCount < before.faceCount * CLOSE) return;
-    if (faceCount * CLOSE > after.faceCount && deviation < after.deviation * CLOSE) return;
+    const place = Math.min(deviation * farther, before.deviation * (1 - 1e-9));
+    if (faceCount * CLOSE > after.faceCount && place < after.deviation * CLOSE && place < before.deviation / CLOSE) return;
     const isStep = faceCount === after.faceCount && faceCount === known[at + 1]?.faceCount;
-    known.splice(at, isStep ? 1 : 0, { deviation, faceCount });
+    known.splice(at, isStep ? 1 : 0, { deviation: place, faceCount });
   }
 
   get coarsest() {
@@ -95,14 +95,14 @@ class Entry {
     if (level.faceCount !== this.level?.faceCount) this.since = now;
     this.level = level;
     this.curve.learn(level.deviation, level.faceCount);
-    // It has had the time to get as coarse as it may.
-    if (now - this.since > SETTLED && level.deviation < this.wanted) this.curve.learn(this.wanted, level.faceCount);
+    // It has had the time to get as coarse as it may: there is no other level up to what is wanted, and hardly a little farther.
+    if (now - this.since > SETTLED && level.deviation < this.wanted) this.curve.learn(this.wanted, level.faceCount, STEP);
   }
 
-  /** The deviation of what has arrived. */
+  /** The deviation of what has arrived, of which a file's own level is part. */
   get arrived() {
     const { chunks, chunksReady, shown } = this.mesh;
-    return chunks && chunksReady > 0 ? chunks[chunksReady - 1].deviation : (shown?.deviation ?? Infinity);
+    return Math.min(shown?.deviation ?? Infinity, chunks && chunksReady > 0 ? chunks[chunksReady - 1].deviation : Infinity);
   }
 
   get nextChunk() {
@@ -120,8 +120,7 @@ class Entry {
 
   /** A little finer is not worth the work; a little coarser is, where there are too many triangles. */
   want(deviation, now) {
-    const same = this.wanted === deviation || (deviation <= this.wanted * CLOSEST && deviation * STEP >= this.wanted);
-    if (same && (deviation > 0) === (this.wanted > 0)) return;
+    if (deviation <= this.wanted && deviation * STEP >= this.wanted && (deviation > 0 || this.wanted === 0)) return;
     this.wanted = deviation;
     this.since = now;
     this.mesh.want(deviation);
