@@ -197,7 +197,12 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->check(CLI::IsMember({"msft-lod", "files", "stream"}))
       ->type_name("NAME")
       ->group(group);
-  app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
+  CLI::Option* none = app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
+  app.add_flag("--lossless", lossless,
+               "Keep the stream's numbers bit for bit, at several times its size, instead of rounding them as "
+               "compressed levels do")
+      ->excludes(none)
+      ->group(group);
   CLI::Option* compress =
       app.add_option(
              "--compress", compression,

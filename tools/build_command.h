@@ -45,6 +45,7 @@ struct BuildCommand {
   std::string placement = "optimised";
   std::string profile = "msft-lod";
   bool no_stream = false;
+  bool lossless = false;
   std::string compression = "draco";  ///< or "meshopt", "none"
   std::optional<int> position_bits;   ///< unset: 14, or what the shape needs
   std::optional<double> grid_step;    ///< in place of bits

@@ -83,6 +83,7 @@ Result<void> check_stream_file(const BuildCommand& command) {
       Given{command.per_mesh, "--per-mesh", "a .lods is one mesh"},
       Given{command.profile != "msft-lod", "--profile", "a .lods is one file"},
       Given{command.no_stream, "--no-stream", "a .lods is a stream"},
+      Given{command.lossless, "--lossless", "a .lods is rounded to grids"},
       Given{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
       Given{command.placement != "optimised", "--placement", "the vertices of a .lods are those of the input"},
       Given{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}};
@@ -114,6 +115,8 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
     if (given->size() > 1 || options.level_count)
       return fail(ErrorCode::InvalidArgument, "--profile stream shows one level: give one target, and no --levels");
     if (options.no_stream) return fail(ErrorCode::InvalidArgument, "--no-stream: --profile stream is a stream");
+    if (options.lossless)
+      return fail(ErrorCode::InvalidArgument, "--lossless: streams of --profile stream are rounded to grids");
     return given->empty() ? ratio_targets(kShownRatio, 1) : given;
   }
   if (writes_stream_file(options)) {
@@ -183,6 +186,7 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   if (shows_one_level(command)) options.layout = FileLayout::Refined;
   if (writes_stream_file(command)) options.layout = FileLayout::StreamAlone;
   options.stream = !command.no_stream;
+  options.lossless = command.lossless;
   options.strict = command.strict;
   options.keep_levels = command.html.has_value();
   LODESTONE_TRY(options.storage, asset_options(command));
@@ -206,6 +210,7 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"importance", options.importance},
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", writes_stream(options)},
+               {"lossless", options.lossless},
                {"compression", writes_stream_file(options) ? Json(nullptr) : Json(options.compression)}};
   const bool has_grid = compression_of(options.compression) != Compression::None;
   const bool has_bits = has_grid && options.position_bits;

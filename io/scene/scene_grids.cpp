@@ -313,25 +313,38 @@ Result<std::vector<QuantizationGrids>> fit_grids(const Scene& scene, std::span<c
 
 namespace lodestone {
 
+namespace {
+
+/// The grids that files without a stream would have for the whole meshes.
+std::vector<detail::QuantizationGrid> grids_of_whole(const Scene& scene, AssetOptions options) {
+  options.compression = Compression::Draco;
+  options.position_grid.reset();
+  return detail::fit_positions(scene, options,
+                               [&](std::size_t mesh, const auto& add) { add(scene.meshes()[mesh].mesh); });
+}
+
+}  // namespace
+
+std::vector<bool> fit_compact_streams(const Scene& scene, const AssetOptions& options) {
+  std::vector<bool> fit;
+  for (const detail::QuantizationGrid& grid : grids_of_whole(scene, options))
+    fit.push_back(!grid.is_exact() && grid.bits <= kMostGridBits);
+  return fit;
+}
+
 std::vector<CompactOptions> compact_options(const Scene& scene, const AssetOptions& options) {
   constexpr int kMostOtherBits = 24;
-  AssetOptions plain = options;
-  plain.compression = Compression::Draco;
-  plain.position_grid.reset();
-  const auto fit = [&] {
-    return detail::fit_positions(scene, plain,
-                                 [&](std::size_t mesh, const auto& add) { add(scene.meshes()[mesh].mesh); });
-  };
   std::vector<CompactOptions> compact;
-  for (const detail::QuantizationGrid& grid : fit()) {
+  for (const detail::QuantizationGrid& grid : grids_of_whole(scene, options)) {
     CompactOptions& mesh = compact.emplace_back();
     mesh.grid_bits = grid.is_exact() ? kMostGridBits : std::clamp(grid.bits, kLeastGridBits, kMostGridBits);
     mesh.normal_bits = std::min(options.normal_bits, kMostOtherBits);
     mesh.texture_bits = std::clamp(options.texcoord_bits, 2, kMostOtherBits);
     mesh.other_bits = std::clamp(std::max(options.generic_bits, detail::kMinWeightBits), 2, kMostOtherBits);
   }
-  plain.position_bits = kMostGridBits;  // boxes do not hang on it
-  const std::vector<detail::QuantizationGrid> boxes = fit();
+  AssetOptions finest = options;
+  finest.position_bits = kMostGridBits;  // boxes do not hang on it
+  const std::vector<detail::QuantizationGrid> boxes = grids_of_whole(scene, finest);
   for (std::size_t i = 0; i < compact.size(); ++i)
     if (const auto& o = boxes[i].origin; o.size() == 3)
       compact[i].grid = CompactGrid{{o[0], o[1], o[2]}, boxes[i].range};

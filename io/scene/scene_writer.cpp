@@ -76,6 +76,7 @@ Result<void> check_options(const AssetOptions& options) {
 struct LevelRange {
   std::size_t first = 0;
   std::size_t count = 1;
+  bool is_picked = false;  ///< one of them, which a stream may refine
 };
 
 Result<LevelRange> all_levels(const Scene& scene, std::span<const LeveledMesh> meshes) {
@@ -88,7 +89,7 @@ Result<LevelRange> all_levels(const Scene& scene, std::span<const LeveledMesh> m
   for (const LeveledMesh& mesh : meshes)
     if (mesh.levels.size() != count)
       return fail(ErrorCode::InvalidArgument, text("meshes of ", count, " and of ", mesh.levels.size(), " levels"));
-  return LevelRange{0, count};
+  return LevelRange{0, count, false};
 }
 
 /// Writes the file part by part, in the order in which its bytes come.
@@ -335,7 +336,7 @@ class SceneWriter {
   }
 
   /// What one level is refined by comes later than all else, and by parts: not out of one buffer with it.
-  bool streams_are_files() const { return !options_.gltf_name.empty() && range_.count == 1; }
+  bool streams_are_files() const { return !options_.gltf_name.empty() && range_.is_picked; }
 
   /// The stream refines to the finest level and so belongs to its mesh; a level without faces has neither.
   void add_stream(std::size_t mesh) {
@@ -350,7 +351,7 @@ class SceneWriter {
       extension["bufferView"] = builder_.add_view(stream);
     }
     extension["version"] = version_text(stream);
-    if (is_compact(stream)) add_shown_numbers(levels_[mesh][0], scene_.meshes()[mesh], extension);
+    if (is_compact(stream) && range_.is_picked) add_shown_numbers(levels_[mesh][0], scene_.meshes()[mesh], extension);
     Json& extensions = builder_.at("meshes", impl_.sources[mesh].mesh)["extensions"];
     if (!extensions.is_object()) extensions = Json::object();
     extensions[kStreamExtension] = std::move(extension);
@@ -492,7 +493,7 @@ Result<EncodedGeometry> encode_geometry(const Scene& scene, std::span<const Leve
   LODESTONE_TRY(LevelRange range, all_levels(scene, meshes));
   if (content.level && *content.level >= range.count)
     return fail(ErrorCode::InvalidArgument, text("level ", *content.level, " of ", range.count, " does not exist"));
-  if (content.level) range = {*content.level, 1};
+  if (content.level) range = {*content.level, 1, true};
   auto impl = std::make_unique<EncodedGeometry::Impl>(scene, meshes, range, content.streams, options);
   LODESTONE_CHECK(impl->writer.encode());
   return EncodedGeometry(std::move(impl));

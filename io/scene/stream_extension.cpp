@@ -20,7 +20,8 @@ std::string version_text(std::span<const std::byte> stream) {
 
 bool shows_level_of_stream(const Json& mesh) {
   const Json* extension = GltfDocument::extension(mesh, kStreamExtension);
-  return extension != nullptr && string_member(*extension, "version").starts_with(text(kCompactStreamVersion, "."));
+  return extension != nullptr && find_member(*extension, "deviation") != nullptr &&
+         string_member(*extension, "version").starts_with(text(kCompactStreamVersion, "."));
 }
 
 Result<std::vector<std::byte>> stored_stream(const GltfDocument& document, std::size_t mesh, const FileFetcher& fetch) {

@@ -91,6 +91,65 @@ TEST_CASE("a refined file shows one level, and its stream leads to the whole mes
   CHECK(off >= 5);  // flat ones are not
 }
 
+TEST_CASE("streams of files with all levels are compact, unless floats are kept or no grid is fine enough") {
+  const auto version = [](const Scene& scene, const BuildOptions& options) {
+    const BuildResult result = built(scene, options);
+    const std::vector<Asset::Stream> streams = streams_of(result);
+    REQUIRE(streams.size() == 1);
+    const GltfFile file = GltfFile::from_glb(result.files[0].glb);
+    const GltfJson& extension = file.json["meshes"][0]["extensions"]["LODESTONE_removal_stream"];
+    CHECK(!extension.contains("deviation"));  // the mesh is the finest level
+    const int major = stream_version(streams[0].bytes);
+    CHECK(extension["version"] == std::to_string(major) + ".0");
+    const Mesh last = refined_to_the_end(streams[0].bytes);
+    CHECK(last.face_count() == scene.meshes()[0].mesh.face_count());
+    return major;
+  };
+  const Scene ball = scene_of(icosphere(3, 0.02, 7));
+  BuildOptions usual;
+  CHECK(version(ball, usual) == 3);
+  for (const int levels : {1, 2}) {  // a file of one level is one to build from, too
+    usual.targets = ratio_targets(0.5, levels - 1);
+    CHECK(version(ball, usual) == 3);
+    const auto again = Scene::read_bytes(built(ball, usual).files[0].glb, "glb");
+    CHECK(again.has_value() == (levels == 1));
+  }
+  BuildOptions lossless = usual, plain = usual, fine = usual, coarse = usual, gridded = usual, close = usual;
+  lossless.lossless = true;
+  CHECK(version(ball, lossless) == 2);
+  plain.storage.compression = Compression::None;
+  CHECK(version(ball, plain) == 2);
+  fine.storage.position_bits = 17;
+  CHECK(version(ball, fine) == 2);
+  coarse.storage.position_bits = 6;
+  CHECK(version(ball, coarse) == 3);
+  gridded.storage.position_grid = PositionGrid{{}, 0.001F};
+  CHECK(version(ball, gridded) == 2);
+  close.targets = {{TargetKind::Error, 1e-6, false, false}};
+  CHECK(version(ball, close) == 2);
+
+  // A shape that is far longer than thick.
+  TriangleSoup rod = icosphere(3, 0, 7);
+  for (Vec3f& p : rod.positions) p = {p.x * 1000, p.y * 0.01F, p.z * 0.01F};
+  CHECK(version(scene_of(rod), usual) == 2);
+}
+
+TEST_CASE("the levels of a file do not hang on whether its stream is compact") {
+  const Scene scene = scene_of(seam_sphere(16, 12));
+  BuildOptions lossless;
+  lossless.lossless = true;
+  const auto levels = [&](const BuildOptions& options) {
+    const Asset asset = Asset::read_bytes(built(scene, options).files[0].glb).value();
+    const std::vector<Asset::Level> read = asset.levels().value();
+    std::vector<std::vector<Vec3f>> positions;
+    for (const Asset::Level& level : read) positions.push_back(level.mesh.positions);
+    return positions;
+  };
+  const auto usual = levels({});
+  CHECK(usual.size() > 2);
+  CHECK((usual == levels(lossless)));
+}
+
 TEST_CASE("a stream alone leads to the mesh, through the levels that it is measured at") {
   for (const TriangleSoup& soup : shapes()) {
     const Scene scene = scene_of(soup);
@@ -136,6 +195,11 @@ TEST_CASE("a stream alone is of one mesh, and compact streams have 8 to 16 bits"
   }
   options.storage.position_bits = 16;
   CHECK(build_asset(scene, options).value().position_bits == 16);
+  GltfMaker maker;
+  for (const char* name : {"one", "two"}) add_node(maker, name, add_mesh(maker, name, cube(1)));
+  const auto two = build_asset(Scene::read_bytes(maker.glb(), "glb").value(), options);
+  REQUIRE_FALSE(two);
+  CHECK_THAT(two.error().message, contains("of one mesh, not of 2"));
 }
 
 TEST_CASE("a refined file names its stream's version, and is no original to build from") {

@@ -201,9 +201,15 @@ TEST_CASE("the deviations of a level are those of the level in the file") {
   CHECK((report["levels"][0]["deviation"]["max"].get<double>() > 0) == (option != "--no-draco"));
 }
 
-TEST_CASE("extract gives back the whole mesh for an error of 0") {
+TEST_CASE("extract gives back the whole mesh for an error of 0, on the stream's grid or as it was") {
   const Workshop shop(GENERATE(bumpy_sphere(), grid(12, 0, 1), terrain(16, 3)));
   REQUIRE(shop.build().exit_code == 0);
+  REQUIRE(shop.extract("--error", "0", "rounded.ply").exit_code == 0);
+  CHECK(shop.faces_of("rounded.ply") == shop.faces_of("in.obj"));
+  const Json rounded = shop.compare("rounded.ply");
+  CHECK(rounded["deviation"]["max"].get<double>() < rounded["diagonal"].get<double>() / (1 << 14));
+
+  REQUIRE(shop.build({"--lossless"}).exit_code == 0);
   for (const char* name : {"whole.obj", "whole.ply", "whole.glb"}) {
     CAPTURE(name);
     REQUIRE(shop.extract("--error", "0", name).exit_code == 0);
@@ -241,7 +247,9 @@ TEST_CASE("inspect accounts for every byte of an asset") {
   for (const Json& level : json["levels"]) bytes += level["bytes"].get<std::size_t>();
   CHECK(bytes == std::filesystem::file_size(shop.glb));
   CHECK(json["stream"]["chunks"].back()["faces"] == json["levels"][0]["faces"]);
-  CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("removal stream"));
+  CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("compact stream of "));
+  REQUIRE(shop.build({"--lossless"}).exit_code == 0);
+  CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("removal stream of in, version 2."));
 }
 
 TEST_CASE("inspect describes any mesh") {

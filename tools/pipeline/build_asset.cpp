@@ -103,29 +103,44 @@ void report_plan(const Scene& scene, LevelPlan& plan, const std::vector<LeveledM
 constexpr double kStreamsShare = 0.3;
 constexpr double kEncodingShare = 0.9;
 
-Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const CompactOptions* compact,
-                                      const Progress& progress) {
-  if (compact == nullptr) {
-    StreamOptions options;
+/// How each mesh's stream is encoded; nothing for one that keeps its floats.
+std::vector<std::optional<CompactOptions>> stream_options(const Scene& scene, const BuildOptions& build) {
+  std::vector<std::optional<CompactOptions>> options(scene.meshes().size());
+  const bool always = is_by_compact_streams(build.layout);
+  const AssetOptions storage = always ? build.storage : storage_of(scene, build);
+  const bool never = build.lossless || storage.position_grid || storage.compression == Compression::None;
+  if (never && !always) return options;
+  const std::vector<CompactOptions> compact = compact_options(scene, storage);
+  const std::vector<bool> fit = fit_compact_streams(scene, storage);
+  for (std::size_t i = 0; i < options.size(); ++i)
+    if (always || fit[i]) options[i] = compact[i];
+  return options;
+}
+
+/// What a compact stream does not hold, one that keeps its floats may, if the layout has such.
+Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const std::optional<CompactOptions>& compact,
+                                      FileLayout layout, const Progress& progress) {
+  if (compact) {
+    CompactOptions options = *compact;
     options.progress = progress;
-    return encode_stream(mesh, options);
+    Result<CompactStream> stream = encode_compact(mesh, options);
+    if (stream) return std::move(stream->bytes);
+    if (is_by_compact_streams(layout) || stream.error().code == ErrorCode::Cancelled)
+      return tl::unexpected(stream.error());
   }
-  CompactOptions options = *compact;
+  StreamOptions options;
   options.progress = progress;
-  LODESTONE_TRY(CompactStream stream, encode_compact(mesh, options));
-  return std::move(stream.bytes);
+  return encode_stream(mesh, options);
 }
 
 /// A mesh that is beyond the stream's limits goes without one; its levels do not need it, unless all but one are in it.
 Result<void> encode_streams(const Scene& scene, const BuildOptions& build, std::vector<LeveledMesh>& levels,
                             BuildResult& result, Notes& notes, const Progress& progress) {
-  const bool is_compact = is_by_compact_streams(build.layout);
-  std::vector<CompactOptions> compact;
-  if (is_compact) compact = compact_options(scene, build.storage);
+  const std::vector<std::optional<CompactOptions>> options = stream_options(scene, build);
   std::vector<Result<std::vector<std::byte>>> streams(levels.size());
   for_each_in_parallel(levels.size(), [&](std::size_t i) {
     const Progress part = progress.part(1 / static_cast<double>(levels.size()));
-    if (!part.is_cancelled()) streams[i] = encode(result.simplified[i].mesh, is_compact ? &compact[i] : nullptr, part);
+    if (!part.is_cancelled()) streams[i] = encode(result.simplified[i].mesh, options[i], build.layout, part);
   });
   if (!progress.reach(1)) return cancelled();
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -133,7 +148,7 @@ Result<void> encode_streams(const Scene& scene, const BuildOptions& build, std::
     if (streams[i]) {
       result.meshes[i].stream.bytes = streams[i]->size();
       levels[i].stream = std::move(*streams[i]);
-    } else if (!is_compact && streams[i].error().code == ErrorCode::LimitExceeded) {
+    } else if (!is_by_compact_streams(build.layout) && streams[i].error().code == ErrorCode::LimitExceeded) {
       notes.add(text(name, " has no removal stream: ", streams[i].error().message));
     } else {
       return fail(streams[i].error().code, text(name, ": ", streams[i].error().message));

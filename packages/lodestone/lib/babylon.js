@@ -306,7 +306,7 @@ class LodestoneExtension {
     });
     // Nodes that each load the mesh for themselves show the same faces.
     const faces = new Map(parts.map(({ geometry, primitive }) => [primitive, (geometry.getTotalIndices() || geometry.getTotalVertices()) / 3]));
-    const shown = { deviation: extension.deviation ?? Infinity, faceCount: [...faces.values()].reduce((sum, count) => sum + count, 0) };
+    const shown = { deviation: extension.deviation, faceCount: [...faces.values()].reduce((sum, count) => sum + count, 0) };
     // The loader is gone when its stream is opened.
     const { gltf } = loader;
     const engine = loader.babylonScene.getEngine();

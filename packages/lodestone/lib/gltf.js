@@ -67,7 +67,7 @@ export class LodestonePlugin {
       return isMesh ? [{ geometry, primitive, box: geometry.boundingBox?.clone() }] : [];
     });
     const faceCount = parts.reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.attributes.position).count / 3, 0);
-    const shown = { deviation: extension.deviation ?? Infinity, faceCount };
+    const shown = { deviation: extension.deviation, faceCount };
     const makeBuffers = (stream) => new GeometryBuffers(stream, parts, this.#parser.json, definition.primitives);
     const mesh = new RefinedMesh(() => this.#locate(extension), shown, this.#options, makeBuffers);
     mesh.geometries = parts.map(({ geometry }) => geometry);

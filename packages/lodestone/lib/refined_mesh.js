@@ -13,10 +13,13 @@ export function targetOf(name) {
   return match ? { target: Number(match[1]), semantic: match[2] } : undefined;
 }
 
-/** Returns what a mesh's definition says of a stream that can be read here; else undefined. */
+/**
+ * Returns what a mesh's definition says of a stream that can be read here and refines what is shown; else undefined. Without a
+ * deviation the mesh is the finest level, which needs no refining.
+ */
 export function streamOf(definition) {
   const extension = definition.extensions?.[EXTENSION];
-  return extension?.version?.startsWith('3.') ? extension : undefined;
+  return extension?.version?.startsWith('3.') && extension.deviation !== undefined ? extension : undefined;
 }
 
 /**

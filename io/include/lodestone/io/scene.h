@@ -92,6 +92,9 @@ std::vector<double> quantisation_errors(const Scene& scene, const AssetOptions& 
 /// streams.
 std::vector<CompactOptions> compact_options(const Scene& scene, const AssetOptions& options);
 
+/// Returns of which meshes that grid is as fine as the options and shapes ask for.
+std::vector<bool> fit_compact_streams(const Scene& scene, const AssetOptions& options);
+
 /// What of the levels and streams given a file holds.
 struct FileContent {
   std::optional<std::size_t> level;  ///< this one alone

@@ -47,7 +47,10 @@ struct BuildOptions {
   Importance importance;                       ///< of materials and nodes, by name
   Placement placement = Placement::Optimised;  ///< of each level but the first; a stream alone has a subset
   FileLayout layout = FileLayout::OneFile;
-  bool stream = true;        ///< write each mesh's removal stream, with all levels in one file
+  bool stream = true;  ///< write each mesh's removal stream, with all levels in one file
+  /// With all levels in one file: keep the stream's floats, bit for bit, at several times its size. So do streams of
+  /// what is not compressed, has a grid of a given step, or needs more than 16 bits for a position.
+  bool lossless = false;
   bool strict = false;       ///< stop before anything is encoded where a target cannot be met
   bool keep_levels = false;  ///< keep the levels as the files have them: see `BuildResult::decoded`
   /// Of a stream alone: what its faces' materials are called, by number of the primitive; empty: as those.
