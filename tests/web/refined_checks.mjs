@@ -109,6 +109,29 @@ function checksOf(site, page, { name, model, path }, prefix) {
       assert.ok(original === null || Math.abs(refined - original) < 0.01 * original, `${refined} and ${original}`);
       return original === null ? 'passes both' : refined.toPrecision(4);
     },
+    "casts the original's shadow": async () => {
+      await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
+      await page.ask(() => window.castShadows(true));
+      await page.ask(() => window.keepPicture());
+      await page.ask((url) => window.openFile(url, 'draco', true), site.url(path));
+      await page.ask(() => window.castShadows(true));
+      const coarse = await page.ask(() => window.likeKept());
+      await page.ask(() => window.finish());
+      const likeness = await page.ask(() => window.likeKept());
+      await picture('shadow');
+      await page.ask(() => window.castShadows(false));
+      assert.ok(likeness >= leastLikeness && likeness > coarse, `similarity ${coarse.toFixed(4)}, then ${likeness.toFixed(4)}`);
+      return `similarity ${coarse.toFixed(4)}, then ${likeness.toFixed(4)}`;
+    },
+    'holds a budget': async () => {
+      const most = Math.round(Math.max(0.4 * whole.drawn, 1.5 * shown.drawn));
+      await page.ask(([url, triangles]) => window.openFile(url, 'draco', true, triangles), [site.url(path), most]);
+      let state = await settle();
+      for (let tries = 0; tries < 5 && state.drawn > most; ++tries) state = await settle(); // it takes a while to be known
+      assert.ok(state.drawn <= most && state.drawn > shown.drawn, `${state.drawn} of ${most} triangles`);
+      await page.ask(() => window.closeFile());
+      return `${state.drawn} of ${most} triangles`;
+    },
     'moves as the original': async () => {
       for (const time of [0.4, 1.1]) {
         await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));

@@ -113,8 +113,8 @@ class GeometryBuffers {
         if (this.#stream.groups[group].material !== part.primitive || part.geometry.isDisposed()) continue;
         if (isFirst) this.#clear(part);
         this.#putVertices(part, made, isFirst);
-        if (moved) this.#putTargets(part);
         if (moved || ranges.length > 0 || count !== part.geometry.getTotalIndices()) this.#putIndices(part.geometry, group, count);
+        if (moved) this.#putTargets(part);
         if (moved) this.#bound(part, update);
       }
     });
@@ -167,7 +167,7 @@ class GeometryBuffers {
   }
 
   #targetValues(own) {
-    return this.#stream.attributes.flatMap(({ name }, i) => {
+    return this.#stream.attributes.flatMap(({ name, componentCount }, i) => {
       const { target, semantic } = targetOf(name) ?? {};
       const base = this.#stream.attributes.findIndex((format, other) => format.name === semantic && own[other]);
       const set = SET_TARGET[semantic];
@@ -175,7 +175,7 @@ class GeometryBuffers {
       const numbers = Float32Array.from(this.#buffers[1 + i].numbers(this.#wedges));
       const moved = this.#buffers[1 + base].vertices.getFloatData(this.#wedges);
       for (let k = 0; k < numbers.length; ++k) numbers[k] += moved[k];
-      return [{ target, set, numbers }];
+      return [{ target, set, numbers: semantic === 'COLOR_0' && componentCount === 3 ? withAlpha(numbers) : numbers }];
     });
   }
 
@@ -196,6 +196,11 @@ class GeometryBuffers {
       for (const instance of mesh.instances) instance.buildBoundingInfo(least, most, instance.getWorldMatrix());
     }
   }
+}
+
+/** Colours of targets have four numbers in Babylon.js. */
+function withAlpha(colours) {
+  return Float32Array.from({ length: (4 * colours.length) / 3 }, (_, i) => (i % 4 === 3 ? 1 : colours[3 * (i >> 2) + (i % 4)]));
 }
 
 /** How a camera of Babylon.js sees: see pixelsAt. */
@@ -238,10 +243,12 @@ function watch(scene, meshes) {
       }
       if (mesh.geometries.every((geometry) => geometry.isDisposed())) mesh.close();
     }
-    if (meshes.every(({ isClosed }) => isClosed)) scene.onBeforeCameraRenderObservable.remove(observer);
+    if (!meshes.every(({ isClosed }) => isClosed)) return;
+    scene.onBeforeCameraRenderObservable.remove(seeing);
+    scene.onDisposeObservable.remove(closing);
   };
-  const observer = scene.onBeforeCameraRenderObservable.add(see);
-  scene.onDisposeObservable.addOnce(() => meshes.forEach((mesh) => mesh.close()));
+  const seeing = scene.onBeforeCameraRenderObservable.add(see);
+  const closing = scene.onDisposeObservable.add(() => meshes.forEach((mesh) => mesh.close()));
 }
 
 function isSeen(shape, camera, scene) {
@@ -313,6 +320,7 @@ class LodestoneExtension {
     const makeBuffers = (stream) => new GeometryBuffers(stream, engine, parts, gltf, definition.primitives);
     const mesh = new RefinedMesh(this.#locate(extension), shown, this.#options, makeBuffers);
     mesh.geometries = parts.map(({ geometry }) => geometry);
+    mesh.primitiveCount = faces.size;
     for (const geometry of mesh.geometries) addBones(mesh.bones, geometry);
     return mesh;
   }

@@ -71,6 +71,7 @@ export class LodestonePlugin {
     const makeBuffers = (stream) => new GeometryBuffers(stream, parts, this.#parser.json, definition.primitives);
     const mesh = new RefinedMesh(() => this.#locate(extension), shown, this.#options, makeBuffers);
     mesh.geometries = parts.map(({ geometry }) => geometry);
+    mesh.primitiveCount = parts.length;
     mesh.geometries.forEach((geometry) => addBones(mesh.bones, geometry.attributes));
     this.#meshes.push(mesh);
     return object;

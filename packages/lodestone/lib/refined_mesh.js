@@ -56,6 +56,8 @@ export class RefinedMesh {
   #closed = false;
   #resolve;
   #reject;
+  geometries = []; // that show it: whoever makes it says them
+  primitiveCount = 1; // that those are of
 
   constructor(source, shown, options, makeBuffers) {
     this.#source = source;
@@ -103,10 +105,10 @@ export class RefinedMesh {
     return this.#bones;
   }
 
-  /** Is told by each object that shows it, at so many places, how many pixels a unit of the mesh covers there. */
+  /** Is told by each object that shows one of its primitives, at so many places, how many pixels a unit of the mesh covers there. */
   see(pixels, frame, places = 1) {
     if (!(pixels > 0)) return; // at no size
-    if (this.#options.budget) this.#options.budget.see(this, pixels, places);
+    if (this.#options.budget) this.#options.budget.see(this, pixels, places / this.primitiveCount);
     else this.#need(this.#options.pixelError / pixels, frame);
   }
 

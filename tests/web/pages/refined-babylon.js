@@ -1,17 +1,21 @@
 // Draws a glTF that refines itself by lodestone's extension for Babylon.js's loader, beside the one that it was made of.
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
 import { Engine } from '@babylonjs/core/Engines/engine.js';
+import { ShadowGenerator } from '@babylonjs/core/Lights/Shadows/shadowGenerator.js';
+import '@babylonjs/core/Lights/Shadows/shadowGeneratorSceneComponent.js';
 import { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
 import { HemisphericLight } from '@babylonjs/core/Lights/hemisphericLight.js';
 import { ImportMeshAsync } from '@babylonjs/core/Loading/sceneLoader.js';
 import { Color4 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { CreateGround } from '@babylonjs/core/Meshes/Builders/groundBuilder.js';
 import { DracoDecoder } from '@babylonjs/core/Meshes/Compression/dracoDecoder.js';
-import { MorphTargetManager } from '@babylonjs/core/Morph/morphTargetManager.js';
+import '@babylonjs/core/Materials/standardMaterial.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import '@babylonjs/core/Culling/ray.js';
 import '@babylonjs/core/Animations/animatable.js';
 import '@babylonjs/loaders/glTF/2.0/index.js';
+import { DetailBudget } from 'lodestone/budget';
 import { refinementOf, registerLodestone } from 'lodestone/babylon';
 import { similarity } from './ssim.js';
 
@@ -28,7 +32,8 @@ DracoDecoder.DefaultConfiguration = {
 const engine = new Engine(document.getElementById('canvas'), true, { preserveDrawingBuffer: true });
 const scene = new Scene(engine);
 scene.clearColor = new Color4(0.44, 0.53, 0.66, 1);
-new DirectionalLight('sun', new Vector3(-1, -2, -3), scene).intensity = 2.5;
+const light = new DirectionalLight('sun', new Vector3(-1, -2, -3), scene);
+light.intensity = 2.5;
 new HemisphericLight('sky', new Vector3(0, 1, 0), scene).intensity = 0.8;
 const camera = new FreeCamera('camera', Vector3.Zero(), scene);
 camera.fov = (35 * Math.PI) / 180;
@@ -36,13 +41,17 @@ camera.fov = (35 * Math.PI) / 180;
 let loaded;
 let refinement;
 let sphere;
+let budget;
 let updates = 0;
+let floor;
+let generator;
 registerLodestone({ onUpdate: () => ++updates });
 
-/** Loads a file; with the extension where `refines`. */
-window.openFile = async (url, compression, refines) => {
+/** Loads a file; with the extension where `refines`, and a budget where `triangles` says so. */
+window.openFile = async (url, compression, refines, triangles) => {
   window.closeFile();
-  const pluginOptions = { gltf: { extensionOptions: { LODESTONE_removal_stream: { enabled: refines } } } };
+  budget = triangles && new DetailBudget({ triangles, pixelError: 0 });
+  const pluginOptions = { gltf: { extensionOptions: { LODESTONE_removal_stream: { enabled: refines, budget } } } };
   loaded = await ImportMeshAsync(url, scene, { pluginOptions });
   const root = loaded.meshes[0];
   refinement = refinementOf(root);
@@ -83,6 +92,23 @@ window.moveTo = (radii) => {
   camera.setTarget(sphere.center);
 };
 
+/** Puts a floor below, on which the object's shadow falls; or takes it away. */
+window.castShadows = async (casts) => {
+  floor?.dispose(false, true);
+  generator?.dispose();
+  floor = generator = undefined;
+  if (!casts) return;
+  const { center, radius } = sphere;
+  floor = CreateGround('floor', { width: 8 * radius, height: 8 * radius }, scene);
+  floor.position.copyFrom(center).subtractInPlace(new Vector3(0, 0.6 * radius, 0));
+  floor.receiveShadows = true;
+  light.position = center.subtract(light.direction.normalizeToNew().scale(3 * radius));
+  generator = new ShadowGenerator(1024, light);
+  for (const mesh of loaded.meshes) if (mesh.subMeshes?.length > 0) generator.addShadowCaster(mesh, false);
+  await generator.forceCompilationAsync();
+  await scene.whenReadyAsync();
+};
+
 window.pose = (time) => loaded.animationGroups[0]?.goToFrame(time * 60);
 
 window.setPixelError = (pixels) => {
@@ -91,6 +117,7 @@ window.setPixelError = (pixels) => {
 
 window.drawFrame = () => {
   scene.render();
+  budget?.update();
   const meshes = refinement?.meshes ?? [];
   return {
     drawn: scene.getActiveIndices() / 3,

@@ -1,5 +1,6 @@
 // Draws a glTF that refines itself by lodestone's plugin for GLTFLoader, beside the one that it was made of.
 import * as THREE from 'three';
+import { DetailBudget } from 'lodestone/budget';
 import { LodestonePlugin } from 'lodestone/gltf';
 import { makeLoader } from './scene.js';
 import { similarity } from './ssim.js';
@@ -15,17 +16,23 @@ const light = new THREE.DirectionalLight(0xffffff, 2.5);
 light.position.set(1, 2, 3);
 scene.add(light, new THREE.AmbientLight(0xffffff, 0.8));
 
+const floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1).rotateX(-Math.PI / 2), new THREE.MeshStandardMaterial({ roughness: 1 }));
+floor.receiveShadow = true;
+light.shadow.mapSize.set(1024, 1024);
+
 let gltf;
 let mixer;
 let sphere;
 let camera;
+let budget;
 let updates = 0;
 
-/** Loads a file; with the plugin where `refines`. */
-window.openFile = async (url, compression, refines) => {
+/** Loads a file; with the plugin where `refines`, and a budget where `triangles` says so. */
+window.openFile = async (url, compression, refines, triangles) => {
   window.closeFile();
   const loader = makeLoader(compression);
-  if (refines) loader.register((parser) => new LodestonePlugin(parser, { onUpdate: () => ++updates }));
+  budget = triangles && new DetailBudget({ triangles, pixelError: 0 });
+  if (refines) loader.register((parser) => new LodestonePlugin(parser, { budget, onUpdate: () => ++updates }));
   gltf = await loader.loadAsync(url);
   scene.add(gltf.scene);
   mixer = new THREE.AnimationMixer(gltf.scene);
@@ -55,6 +62,25 @@ window.moveTo = (radii) => {
   camera.updateMatrixWorld();
 };
 
+/** Puts a floor below, on which the object's shadow falls; or takes it away. */
+window.castShadows = (casts) => {
+  renderer.shadowMap.enabled = light.castShadow = casts;
+  scene.remove(floor);
+  if (!casts) return;
+  const { center, radius } = sphere;
+  light.position.copy(center).add(new THREE.Vector3(1, 2, 3).setLength(3 * radius));
+  light.target.position.copy(center);
+  light.target.updateMatrixWorld();
+  Object.assign(light.shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius, far: 8 * radius });
+  light.shadow.camera.updateProjectionMatrix();
+  floor.position.set(center.x, center.y - 0.6 * radius, center.z);
+  floor.scale.setScalar(8 * radius);
+  scene.add(floor);
+  gltf.scene.traverse((object) => {
+    object.castShadow = true;
+  });
+};
+
 window.pose = (time) => mixer.setTime(time);
 
 window.setPixelError = (pixels) => {
@@ -63,6 +89,7 @@ window.setPixelError = (pixels) => {
 
 window.drawFrame = () => {
   renderer.render(scene, camera);
+  budget?.update();
   const meshes = gltf.userData.lodestone?.meshes ?? [];
   return {
     drawn: renderer.info.render.triangles,
