@@ -85,7 +85,6 @@ Result<void> check_stream_file(const BuildCommand& command) {
       Given{command.no_stream, "--no-stream", "a .lods is a stream"},
       Given{command.lossless, "--lossless", "a .lods is rounded to grids"},
       Given{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
-      Given{command.placement != "optimised", "--placement", "the vertices of a .lods are those of the input"},
       Given{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}};
   for (const Given& option : given)
     if (option.given) return fail(ErrorCode::InvalidArgument, detail::text(option.name, ": ", option.why));
@@ -201,7 +200,7 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"reference", options.reference},
                {"levels", level_count},
                {"per_mesh", options.per_mesh},
-               {"placement", writes_stream_file(options) ? "subset" : options.placement},
+               {"placement", options.placement},
                {"profile", writes_stream_file(options) ? "lods" : options.profile},
                {"lock_border", options.lock_border},
                {"vanish", options.vanish},

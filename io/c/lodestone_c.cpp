@@ -35,7 +35,7 @@ struct lodestone_stream {
   StreamReader reader;
   std::string message;
   Vec3f low = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, high = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
-  std::size_t vertices_in_box = 0;
+  std::size_t vertices_in_box = 0, moves_in_box = 0;
 
   const ProgressiveMesh& mesh() const { return reader.mesh(); }
   void grow_box();
@@ -135,6 +135,14 @@ Outcome out_of(const char* name, std::uint64_t number, std::size_t count) {
 
 lodestone_range range_of(EntryRange range) { return {range.begin, range.end}; }
 
+/// Gives as many ranges as there is room for, the last with all that follow; returns how many. Pre: room > 0.
+std::size_t give_ranges(std::span<const EntryRange> given, lodestone_range* ranges, std::size_t room) {
+  const std::size_t count = std::min(room, given.size());
+  std::transform(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(count), ranges, range_of);
+  if (count > 0) ranges[count - 1].end = given.back().end;
+  return count;
+}
+
 /// Checks that wedges lie in the mesh, and that so many numbers each have room.
 Outcome check_wedges(const lodestone_stream& stream, EntryRange wedges, std::size_t each, std::size_t room) {
   const std::size_t count = stream.mesh().wedge_vertex.size();
@@ -150,11 +158,12 @@ Outcome check_wedges(const lodestone_stream& stream, EntryRange wedges, std::siz
 /// Over the vertices that have come since.
 void lodestone_stream::grow_box() {
   const std::vector<Vec3f>& positions = mesh().positions;
-  for (; vertices_in_box < positions.size(); ++vertices_in_box) {
-    const Vec3f& p = positions[vertices_in_box];
+  const auto include = [&](const Vec3f& p) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  };
+  for (; vertices_in_box < positions.size(); ++vertices_in_box) include(positions[vertices_in_box]);
+  for (; moves_in_box < mesh().moves.size(); ++moves_in_box) include(mesh().moves[moves_in_box].to);
 }
 
 uint32_t lodestone_version(void) { return LODESTONE_VERSION; }
@@ -242,17 +251,6 @@ int32_t lodestone_stream_get_attribute(lodestone_stream* stream, uint32_t index,
   });
 }
 
-int32_t lodestone_stream_copy_positions(lodestone_stream* stream, uint32_t begin, uint32_t end, float* out,
-                                        size_t room) {
-  return run(stream, [&](lodestone_stream& s) {
-    const EntryRange wedges = {begin, end};
-    if (Outcome checked = check_wedges(s, wedges, 3, room); checked.code != LODESTONE_OK) return checked;
-    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
-    lodestone::copy_positions(s.mesh(), wedges, out);
-    return Outcome{};
-  });
-}
-
 int32_t lodestone_stream_copy_attribute(lodestone_stream* stream, uint32_t index, uint32_t begin, uint32_t end,
                                         void* out, size_t room) {
   return run(stream, [&](lodestone_stream& s) {
@@ -327,9 +325,29 @@ int32_t lodestone_cursor_take_changes(lodestone_cursor* cursor, uint32_t group, 
     if (group >= c.draw.group_count()) return out_of("group", group, c.draw.group_count());
     if (room == 0) return Outcome{LODESTONE_NO_ROOM, "no room for a range"};
     c.draw.take_changes(group, gap, c.ranges);
-    *count = std::min(room, c.ranges.size());
-    std::transform(c.ranges.begin(), c.ranges.begin() + static_cast<std::ptrdiff_t>(*count), ranges, range_of);
-    if (*count > 0) ranges[*count - 1].end = c.ranges.back().end;
+    *count = give_ranges(c.ranges, ranges, room);
+    return Outcome{};
+  });
+}
+
+int32_t lodestone_cursor_take_moved_wedges(lodestone_cursor* cursor, size_t gap, lodestone_range* ranges, size_t room,
+                                           size_t* count) {
+  return run(cursor, [&](lodestone_cursor& c) {
+    if (ranges == nullptr || count == nullptr) return invalid("ranges or count is null");
+    if (room == 0) return Outcome{LODESTONE_NO_ROOM, "no room for a range"};
+    c.draw.take_moved_wedges(gap, c.ranges);
+    *count = give_ranges(c.ranges, ranges, room);
+    return Outcome{};
+  });
+}
+
+int32_t lodestone_cursor_copy_positions(lodestone_cursor* cursor, uint32_t begin, uint32_t end, float* out,
+                                        size_t room) {
+  return run(cursor, [&](lodestone_cursor& c) {
+    const EntryRange wedges = {begin, end};
+    if (Outcome checked = check_wedges(*c.stream, wedges, 3, room); checked.code != LODESTONE_OK) return checked;
+    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
+    lodestone::copy_positions(c.stream->mesh(), c.draw, wedges, out);
     return Outcome{};
   });
 }

@@ -66,21 +66,45 @@ void CompactDecoder::end_round() {
 Result<void> CompactDecoder::read_errors(BitCoder& coder) {
   int curvature = 0;
   if (!errors_.code(coder, deviation_code_, curvature)) return broken("errors rise");
+  within_code_ = deviation_code_;
+  if (stage_ends_ && !errors_.code_stage_end(coder, deviation_code_, within_code_))
+    return broken("a placed level is worse");
   mesh_.deviation.back() = header_.deviation.value(deviation_code_);
   mesh_.curvature_error.back() = header_.curvature.value(curvature);
   spend(coder, &CompactSizes::errors);
   return {};
 }
 
-void CompactDecoder::add_position(const Vec3i& position) {
+Vec3f CompactDecoder::place(const Vec3i& position) const {
   const auto on_axis = [&](std::int64_t steps, float origin) {
     const double top = static_cast<double>((1 << header_.grid_bits) - 1);
     return static_cast<float>(static_cast<double>(origin) +
                               static_cast<double>(steps) * static_cast<double>(header_.grid.range) / top);
   };
   const Vec3f& origin = header_.grid.origin;
-  mesh_.positions.push_back(
-      {on_axis(position.x, origin.x), on_axis(position.y, origin.y), on_axis(position.z, origin.z)});
+  return {on_axis(position.x, origin.x), on_axis(position.y, origin.y), on_axis(position.z, origin.z)};
+}
+
+void CompactDecoder::add_position(const Vec3i& position) { mesh_.positions.push_back(place(position)); }
+
+/// Adds where vertices go in a round whose records are there.
+void CompactDecoder::add_moves() {
+  if (levels_.moves().empty() && mesh_.move_begin.empty()) return;
+  const std::size_t count = levels_.vertices().count(), first = mesh_.record_count() - count;
+  mesh_.move_begin.resize(first + 1, 0);  // where none has moved before
+  const auto record_of = [&](const CodedMove& move) {
+    return move.star == kNoIndex ? mesh_.record_count() - 1
+                                 : levels_.stars().stars[move.star].vertex - mesh_.base_vertex_count;
+  };
+  std::vector<CodedMove> moves = levels_.moves();
+  std::stable_sort(moves.begin(), moves.end(),
+                   [&](const CodedMove& a, const CodedMove& b) { return record_of(a) < record_of(b); });
+  auto at = moves.begin();
+  for (std::size_t record = first; record < mesh_.record_count(); ++record) {
+    for (; at != moves.end() && record_of(*at) == record; ++at)
+      mesh_.moves.push_back({at->vertex, place(at->from), place(at->to)});
+    mesh_.move_begin.push_back(static_cast<Index>(mesh_.moves.size()));
+  }
 }
 
 /// Adds what the attributes of the newest wedges are.
@@ -137,6 +161,8 @@ Result<void> CompactDecoder::read_base(BitCoder& coder) {
   base.wedge_counts.resize(header_.base_vertex_count);
   for (Index g = 0; g < header_.groups.size(); ++g)
     base.groups.insert(base.groups.end(), header_.groups[g].base_face_count, g);
+  int step = 0;
+  if (!levels_.code_step(coder, step)) return broken("its grid is too coarse");
   if (!levels_.code_base(coder, base)) return broken("base mesh is none");
   if (levels_.wedges().size() != header_.base_wedge_count)
     return broken(
@@ -187,8 +213,8 @@ void CompactDecoder::add_record(std::size_t i) {
   mesh_.sector_begin.push_back(static_cast<Index>(mesh_.sectors.size()));
   mesh_.wedge_vertex.resize(levels_.wedges().end(vertex), vertex);
   mesh_.record_wedge_begin.push_back(static_cast<Index>(mesh_.wedge_vertex.size()));
-  // Up to its end, all of a round has the errors that it begins with.
-  mesh_.deviation.push_back(mesh_.deviation.back());
+  // Up to its end, all of a round has the errors that it begins with, or that its stage does.
+  mesh_.deviation.push_back(header_.deviation.value(within_code_));
   mesh_.curvature_error.push_back(mesh_.curvature_error.back());
   add_position(levels_.positions()[vertex]);
 }
@@ -198,6 +224,9 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
   if (walked_ > most_walked_) return fail(ErrorCode::LimitExceeded, "too many rounds for so small a mesh");
   start_round();
   if (!levels_.code_patches(coder, nullptr)) return broken("a round has no patches");
+  spend(coder, &CompactSizes::places);
+  if (!levels_.code_moves(coder, {})) return broken("a vertex moves off the grid");
+  spend(coder, &CompactSizes::moves);
   if (!levels_.code_places(coder, {})) return broken("a round's patches do not belong together");
   spend(coder, &CompactSizes::places);
   if (!levels_.code_wedges(coder, nullptr)) return broken("a round has wedges that do not fit");
@@ -214,7 +243,11 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
   spend(coder, &CompactSizes::loose);
   if (!levels_.code_attributes(coder, {})) return broken("an attribute is out of its range");
   pass_attributes(coder);
+  if (!levels_.code_stage_end(coder, stage_ends_, {})) return broken("a vertex moves off the grid");
+  if (int step = 0; stage_ends_ && !levels_.code_step(coder, step)) return broken("its grid is too coarse");
+  spend(coder, &CompactSizes::moves);
   for (std::size_t i = 0; i < levels_.vertices().count(); ++i) add_record(i);
+  add_moves();
   add_attributes();
   mesh_.round_begin.push_back(static_cast<Index>(mesh_.record_count()));
   LODESTONE_CHECK(check_held_bytes(mesh_, most_bytes_));

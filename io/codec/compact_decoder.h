@@ -47,7 +47,9 @@ class CompactDecoder {
   void spend(const BitCoder& coder, double CompactSizes::*part);
   void pass_attributes(const BitCoder& coder);
   void end_round();
+  Vec3f place(const Vec3i& position) const;
   void add_position(const Vec3i& position);
+  void add_moves();
   void add_attributes();
   void begin_mesh(const BaseMesh& base);
   void add_record(std::size_t i);
@@ -60,6 +62,8 @@ class CompactDecoder {
   std::uint64_t walked_ = 0;  // by rounds, see LevelCoder::size
   std::uint64_t most_walked_ = 0;
   int deviation_code_ = 0;
+  int within_code_ = 0;             // of levels within the round that comes next
+  bool stage_ends_ = false;         // with the round at hand
   std::vector<Index> slots_;        // by face of the level: in its group
   std::vector<Index> group_faces_;  // by group: of the level
   std::vector<Index> freed_;        // slots of the coarse faces of a record

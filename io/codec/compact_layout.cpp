@@ -346,6 +346,13 @@ bool ErrorCoder::code(BitCoder& coder, NumberCoder& numbers, int& last, int& err
   return true;
 }
 
+bool ErrorCoder::code_stage_end(BitCoder& coder, int& deviation, int& after) {
+  deviation = static_cast<int>(coder.code_raw(static_cast<std::uint32_t>(deviation), 8));
+  after = static_cast<int>(coder.code_raw(static_cast<std::uint32_t>(after), 8));
+  deviation_ = after;
+  return deviation <= after;
+}
+
 bool ErrorCoder::code(BitCoder& coder, int& deviation, int& curvature) {
   return code(coder, deviations_, deviation_, deviation) && code(coder, curvatures_, curvature_, curvature);
 }

@@ -17,12 +17,14 @@ namespace lodestone::detail {
 // The fixed parts of a compact stream; docs/compact-stream.md is the description that counts.
 
 inline constexpr std::uint16_t kCompactMinor = 0;
+inline constexpr int kLeastStepBits = 4;  ///< of coordinates in steps of a stage
 inline constexpr int kLeastAttributeBits = 2;
 inline constexpr int kMostAttributeBits = 24;
 inline constexpr std::uint64_t kMostRecordsPerByte = 8;    ///< of a chunk; the encoder pads it
 inline constexpr std::uint64_t kMostBasePerByte = 8;       ///< vertices, wedges and faces of the base mesh; the same
 inline constexpr std::uint64_t kMostWedgesPerByte = 8;     ///< that a chunk adds; the same
 inline constexpr std::uint64_t kMostNumbersPerByte = 256;  ///< of attributes that a chunk adds; the same
+inline constexpr std::uint64_t kMostMovesEach = 4;         ///< up to the end of a chunk, by vertex of the level then
 inline constexpr std::uint64_t kMostWalked = 256;          ///< by rounds up to the end of a chunk, see LevelCoder::size
 
 inline constexpr std::uint64_t kEndOfCounts = std::uint64_t{1} << 30U;  ///< faces, wedges and vertices are fewer
@@ -91,9 +93,12 @@ std::vector<std::byte> write_compact_header(const CompactHeader& header);
 /// Reads and checks a header: counts are within the limits that the chunks' lengths set.
 Result<CompactHeader> read_compact_header(std::span<const std::byte> bytes);
 
-/// Codes the errors of a level, which never rise.
+/// Codes the errors of a level, which never rise but for where a stage begins.
 class ErrorCoder {
  public:
+  /// Codes the deviation of a level at the end of a stage, and what deviations fall from after it. False where the
+  /// latter is less.
+  bool code_stage_end(BitCoder& coder, int& deviation, int& after);
   /// Codes a level's codes; a reader's are set. False where what is read rises.
   bool code(BitCoder& coder, int& deviation, int& curvature);
 

@@ -26,6 +26,7 @@ constexpr double kPlacesShare = 0.4, kPositionsShare = 0.7;
 
 // A chunk ends with the first round after so many bytes, or as many as came before it.
 constexpr std::size_t kLeastChunkBytes = 1024;
+constexpr double kLeastStageBytes = 64;  // the same where a placed level is reached
 
 auto unsupported(const std::string& message) { return fail(ErrorCode::Unsupported, "compact stream: " + message); }
 
@@ -81,6 +82,34 @@ Result<void> check_grid(const ProgressiveMesh& mesh, const CompactGrid& grid, in
   return {};
 }
 
+/// Returns a float that is not less.
+float upwards(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::max()); }
+
+/// Checks that levels are some of the mesh, one finer than the other.
+Result<void> check_levels(const ProgressiveMesh& mesh, std::span<const PlacedLevel> levels) {
+  Index last = 0;
+  std::uint64_t moves = 0;
+  for (const PlacedLevel& level : levels) {
+    if (level.position <= last || level.position >= mesh.record_count())
+      return wrong(text("placed level ", level.position, " does not lie between ", last, " and ", mesh.record_count()));
+    last = level.position;
+    if (level.positions.size() != mesh.base_vertex_count + std::size_t{level.position})
+      return wrong(text("placed level ", level.position, " of ", mesh.base_vertex_count + std::size_t{level.position},
+                        " vertices has ", level.positions.size()));
+    moves += level.positions.size();  // each vertex on to the next level
+    if (moves > kMostMovesEach * level.positions.size())
+      return beyond(text("placed levels up to that at ", level.position, " move vertices ", moves,
+                         " times, which is more than ", kMostMovesEach, " times each"));
+    if (!(level.deviation >= 0) || !(level.precision >= 0))
+      return wrong(text("placed level ", level.position, " has an error of ", level.deviation, " or a precision of ",
+                        level.precision));
+    for (const Vec3f& p : level.positions)
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        return wrong(text("placed level ", level.position, " has a position that is not finite"));
+  }
+  return {};
+}
+
 /// By position: the largest error there or at a finer one. Measured bounds may be lower at coarser levels.
 std::vector<float> largest_from(std::vector<float> errors) {
   for (std::size_t i = errors.size(); i-- > 1;) errors[i - 1] = std::max(errors[i - 1], errors[i]);
@@ -96,6 +125,7 @@ std::uint64_t full_face_count(const ProgressiveMesh& mesh) {
 /// Checks that there is no more of anything than a stream can hold.
 Result<void> check_counts(const ProgressiveMesh& mesh) {
   if (mesh.groups.empty()) return wrong("mesh has no face group");
+  if (!mesh.moves.empty()) return unsupported("mesh has records that move vertices");
   if (mesh.groups.size() > kMaxGroups || mesh.attributes.size() > kMaxAttributes)
     return beyond(text(mesh.groups.size(), " groups and ", mesh.attributes.size(), " attributes are too many"));
   for (const Attribute& attribute : mesh.attributes) {
@@ -152,8 +182,9 @@ class EncodingListener final : public WorkListener {
 /// Encodes a progressive mesh. Pre: the checks found nothing.
 class CompactEncoder {
  public:
-  CompactEncoder(const ProgressiveMesh& mesh, const CompactOptions& options)
+  CompactEncoder(const ProgressiveMesh& mesh, const CompactOptions& options, std::span<const PlacedLevel> placed)
       : mesh_(mesh),
+        placed_(placed),
         specs_(choose_specs(mesh.attributes, options)),
         levels_(limits_of(mesh, options), specs_),
         coded_(mesh),
@@ -179,9 +210,21 @@ class CompactEncoder {
 
  private:
   Result<void> write_rounds();
+  Vec3i grid_position(const Vec3f& position, int step) const;
   Vec3i grid_position(Index vertex) const;
-  float widened(float deviation) const;
+  double unit() const {
+    return static_cast<double>(header_.grid.range) / static_cast<double>((1 << header_.grid_bits) - 1);
+  }
+  double rounding() const;
+  void plan_stages();
+  float widened(float deviation, double move) const;
+  float widened_within(float deviation, std::size_t stage, double unmoved) const;
+  double farthest_unmoved() const;
+  Vec3 place(const Vec3i& position) const;
   Result<void> write_base();
+  bool begins_stage(Index record) const { return stage_ > 0 && stages_[stage_ - 1].end == record; }
+  Result<void> end_stage(Index end);
+  void find_targets(Index position);
   BaseMesh number_base();
   void number_base_wedges(const std::vector<Index>& vertices, BaseMesh& base);
   Result<void> write_round(Index first, Index end);
@@ -200,6 +243,20 @@ class CompactEncoder {
   void spend(double& part);
 
   const ProgressiveMesh& mesh_;
+  std::span<const PlacedLevel> placed_;
+  /// Rounds that lead to a placed level, or to the full mesh.
+  struct Stage {
+    Index end = 0;         ///< the level's position
+    int step = 0;          ///< positions are multiples of 2^this
+    double move = 0;       ///< by how much its vertices lie off the full mesh's at most, mesh units
+    double deviation = 0;  ///< of the level at its end
+  };
+  std::vector<Stage> stages_;
+  std::size_t stage_ = 0;            // at hand
+  std::size_t stage_of_errors_ = 0;  // the same, up to the end of a stage's last round
+  std::vector<Vec3i> targets_;       // by vertex that is coded: where the stage moves it
+  double float_rounding_ = 0;        // how far the floats that a reader makes lie off at most
+  std::vector<double> off_;          // the same: how far off the full mesh's it lies before that, mesh units
   std::vector<AttributeSpec> specs_;
   std::vector<std::vector<std::int32_t>> numbers_;  // by attribute: of the mesh's wedges
   LevelCoder levels_;
@@ -228,23 +285,76 @@ class CompactEncoder {
   std::vector<Index> own_wedges_;  // of the vertex at hand, in the order of their numbers
 };
 
-Vec3i CompactEncoder::grid_position(Index vertex) const {
+Vec3i CompactEncoder::grid_position(const Vec3f& p, int step) const {
   const auto on_axis = [&](float value, float origin) {
-    const double top = static_cast<double>((1 << header_.grid_bits) - 1);
+    const std::int64_t top = (std::int64_t{1} << header_.grid_bits) - 1;
     const double steps = steps_of(value, origin, header_.grid.range, header_.grid_bits);
-    return static_cast<std::int64_t>(std::floor(std::clamp(steps, 0.0, top) + 0.5));
+    const auto number =
+        static_cast<std::int64_t>(std::floor(std::ldexp(std::clamp(steps, 0.0, double(top)), -step) + 0.5));
+    return std::min(number, top >> step) << step;
   };
-  const Vec3f& p = mesh_.positions[vertex];
   const Vec3f& origin = header_.grid.origin;
   return {on_axis(p.x, origin.x), on_axis(p.y, origin.y), on_axis(p.z, origin.z)};
 }
 
-/// A level's deviation with rounded positions: its points and those of the full mesh both move.
-float CompactEncoder::widened(float deviation) const {
-  if (deviation <= 0) return 0;
-  const double step = static_cast<double>(header_.grid.range) / static_cast<double>((1 << header_.grid_bits) - 1);
-  const double wide = static_cast<double>(deviation) + std::sqrt(3.0) * step;
-  return std::nextafter(static_cast<float>(wide), std::numeric_limits<float>::max());
+/// Where the stage at hand has a vertex.
+Vec3i CompactEncoder::grid_position(Index vertex) const {
+  const std::vector<Vec3f>& positions = stage_ < placed_.size() ? placed_[stage_].positions : mesh_.positions;
+  return grid_position(positions[vertex], stage_ < stages_.size() ? stages_[stage_].step : 0);
+}
+
+/// How far rounding moves a point of the full mesh at most, mesh units.
+double CompactEncoder::rounding() const { return std::sqrt(3.0) / 2 * unit(); }
+
+Vec3 CompactEncoder::place(const Vec3i& n) const {
+  return Vec3(header_.grid.origin) +
+         Vec3{static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)} * unit();
+}
+
+/// Finds how coarsely each stage rounds, and how far that and its level move vertices at most.
+void CompactEncoder::plan_stages() {
+  const Vec3f& o = header_.grid.origin;
+  const double widest = std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) + header_.grid.range;
+  float_rounding_ = 2 * widest * std::numeric_limits<float>::epsilon();
+  for (const PlacedLevel& level : placed_) {
+    Stage& stage = stages_.emplace_back();
+    stage.end = level.position;
+    while (stage.step < header_.grid_bits - kLeastStepBits &&
+           std::ldexp(unit(), stage.step + 1) <= static_cast<double>(level.precision))
+      ++stage.step;
+    double rounding = 0;
+    for (std::size_t v = 0; v < level.positions.size(); ++v) {
+      const Vec3i n = grid_position(level.positions[v], stage.step);
+      const Vec3 p = place(n);
+      stage.move = std::max(stage.move, length(p - Vec3(mesh_.positions[v])));
+      rounding = std::max(rounding, length(p - Vec3(level.positions[v])));
+    }
+    stage.move += float_rounding_;
+    stage.deviation = static_cast<double>(level.deviation) + rounding + float_rounding_;
+  }
+  Stage& last = stages_.emplace_back();
+  last.end = static_cast<Index>(mesh_.record_count());
+  last.move = rounding();
+}
+
+/// The deviation of a level whose vertices lie so far off at most: its points and those of the full mesh both move.
+float CompactEncoder::widened(float deviation, double move) const {
+  if (deviation <= 0 && stages_.size() == 1) return 0;
+  return upwards(static_cast<double>(deviation) + move + rounding());
+}
+
+/// The same within a stage, where some vertices lie where the stage before has them, so far off at most. It never rises
+/// while these get fewer.
+float CompactEncoder::widened_within(float deviation, std::size_t stage, double unmoved) const {
+  return widened(deviation, std::max(stages_[stage].move, unmoved));
+}
+
+/// How far off those vertices lie at most that the stage has not moved yet.
+double CompactEncoder::farthest_unmoved() const {
+  double farthest = 0;
+  for (Index v = 0; v < off_.size(); ++v)
+    if (!levels_.is_placed(v)) farthest = std::max(farthest, off_[v]);
+  return farthest;
 }
 
 /// Adds what was written since the last call to a part.
@@ -255,9 +365,20 @@ void CompactEncoder::spend(double& part) {
 }
 
 void CompactEncoder::write_errors(Index position) {
-  deviation_code_ = header_.deviation.code(widened(deviation_[position]));
+  const bool is_last = stage_ == stages_.size();  // what follows it is nothing
+  const float own = deviation_[position];
+  const double unmoved = stage_of_errors_ < stage_ ? 0 : farthest_unmoved();
+  deviation_code_ = header_.deviation.code(widened_within(own, stage_of_errors_, unmoved));
   int curvature = header_.curvature.code(curvature_[position]);
   errors_.code(coder_, deviation_code_, curvature);
+  if (stage_of_errors_ < stage_) {
+    const Stage& stage = stages_[stage_of_errors_];
+    const float placed = std::min(upwards(stage.deviation + rounding()), widened(own, stage.move));
+    deviation_code_ = is_last ? 0 : header_.deviation.code(placed);
+    int after = is_last ? 0 : header_.deviation.code(widened_within(own, stage_, stage.move));
+    errors_.code_stage_end(coder_, deviation_code_, after);
+    stage_of_errors_ = stage_;
+  }
   spend(result_.sizes.errors);
 }
 
@@ -325,12 +446,42 @@ BaseMesh CompactEncoder::number_base() {
   return base;
 }
 
+/// Finds where the stage at hand moves the vertices of the level that it begins with.
+void CompactEncoder::find_targets(Index position) {
+  targets_.assign(vertex_count_, {});
+  off_.assign(vertex_count_, 0);
+  for (Index v = 0; v < mesh_.base_vertex_count + position; ++v) {
+    const Index coded = coded_.vertex[v];
+    targets_[coded] = grid_position(v);
+    off_[coded] = length(place(levels_.positions()[coded]) - Vec3(mesh_.positions[v])) + float_rounding_;
+  }
+}
+
+/// Ends a stage with the round that ends it. The last one needs no end where there is no other.
+Result<void> CompactEncoder::end_stage(Index end) {
+  bool ends = stages_.size() > 1 && stages_[stage_].end == end;
+  if (!levels_.code_stage_end(coder_, ends, targets_)) return unsupported(text("level ", end, " cannot be placed"));
+  if (ends) {
+    ++stage_;
+    int step = stage_ < stages_.size() ? stages_[stage_].step : 0;
+    levels_.code_step(coder_, step);
+    find_targets(end);
+  }
+  spend(result_.sizes.moves);
+  return {};
+}
+
 Result<void> CompactEncoder::write_base() {
   BaseMesh base = number_base();
   header_.base_vertex_count = vertex_count_;
   header_.base_wedge_count = wedge_count_;
-  header_.deviation = ErrorScale(widened(deviation_.front()));
+  float largest = widened(deviation_.front(), stages_.front().move);
+  for (std::size_t k = 1; k < stages_.size(); ++k)
+    largest = std::max(largest, widened_within(deviation_[stages_[k - 1].end], k, stages_[k - 1].move));
+  header_.deviation = ErrorScale(largest);
   header_.curvature = ErrorScale(curvature_.front());
+  int step = stages_.front().step;
+  levels_.code_step(coder_, step);
   if (!levels_.code_base(coder_, base)) return unsupported("base mesh names no wedges");
   spend(result_.sizes.base);
   if (!write_attributes(true)) return unsupported("attributes of the base mesh are out of their ranges");
@@ -464,6 +615,9 @@ Result<void> CompactEncoder::write_round(Index first, Index end) {
   const auto reach = [&](double share) { return listener_.reach(first + share * (end - first)); };
   planner_.plan(first, end, listener_);
   if (!levels_.code_patches(coder_, &planner_.patches())) return wrong();
+  spend(result_.sizes.places);
+  if (!levels_.code_moves(coder_, targets_)) return wrong();
+  spend(result_.sizes.moves);
   number_stars();
   join_stars();
   if (!levels_.code_places(coder_, joins_)) return wrong();
@@ -485,6 +639,7 @@ Result<void> CompactEncoder::write_round(Index first, Index end) {
   for (const Index record : planner_.loose()) LODESTONE_CHECK(write_loose(record));
   spend(result_.sizes.loose);
   if (!write_attributes(false)) return wrong();
+  LODESTONE_CHECK(end_stage(end));
   write_errors(end);
   ++chunk_.round_count;
   chunk_.record_count += end - first;
@@ -511,19 +666,22 @@ void CompactEncoder::end_chunk() {
 }
 
 Result<void> CompactEncoder::write_rounds() {
+  plan_stages();
   LODESTONE_CHECK(write_base());
   const std::uint64_t most_walked = kMostWalked * (full_face_count(mesh_) + mesh_.positions.size() +
                                                    mesh_.wedge_vertex.size() + mesh_.groups.size() + 1);
   std::uint64_t walked = 0;
   const auto record_count = static_cast<Index>(mesh_.record_count());
   for (Index first = 0, end = 0; first < record_count; first = end) {
-    const bool is_long = coder_.bits() / 8 >= static_cast<double>(std::max(kLeastChunkBytes, body_.size()));
+    const double bytes = coder_.bits() / 8;
+    const bool is_long = bytes >= static_cast<double>(std::max(kLeastChunkBytes, body_.size())) ||
+                         (begins_stage(first) && bytes >= kLeastStageBytes);
     if (is_long && levels_.may_end_chunk() && walked <= kMostWalked * levels_.size()) end_chunk();
     walked += levels_.size();
     if (walked > most_walked)
       return fail(ErrorCode::LimitExceeded, text("compact stream: more than ", result_.round_count, " rounds of ",
                                                  record_count, " records are too many"));
-    end = planner_.take_round(first);
+    end = planner_.take_round(first, stages_[stage_].end);
     if (end == first) return unsupported(text("record ", first, " does not fit its level"));
     LODESTONE_CHECK(write_round(first, end));
   }
@@ -552,11 +710,13 @@ Result<CompactStream> CompactEncoder::run() {
 
 }  // namespace
 
-Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options) {
+Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options,
+                                     std::span<const PlacedLevel> levels) {
   LODESTONE_CHECK(check_options(options));
   LODESTONE_CHECK(check_counts(mesh));
+  LODESTONE_CHECK(check_levels(mesh, levels));
   LODESTONE_CHECK(check_grid(mesh, grid_of(mesh, options), options.grid_bits));
-  return CompactEncoder(mesh, options).run();
+  return CompactEncoder(mesh, options, levels).run();
 }
 
 }  // namespace lodestone

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kMostCornersEach = 64;  // of polygons, for each face and vertex of the level after the chunk
 
-enum Flag : std::uint32_t { kAnyJoins, kJoins, kAnyExtra, kFlags };
+enum Flag : std::uint32_t { kAnyJoins, kJoins, kAnyExtra, kStageEnds, kFlags };
 
 /// Rotates a face so that its largest wedge stands first.
 void rotate_face(Index* vertices, Index* wedges) {
@@ -36,7 +36,8 @@ void LevelCoder::allow(std::uint64_t vertices, std::uint64_t wedges, std::uint64
 }
 
 bool LevelCoder::may_end_chunk() const {
-  return corners_ <= kMostCornersEach * (mesh_.face_count() + positions_.size());
+  return corners_ <= kMostCornersEach * (mesh_.face_count() + positions_.size()) &&
+         move_count_ <= kMostMovesEach * positions_.size();
 }
 
 /// How many corners polygons may still have.
@@ -54,6 +55,7 @@ bool LevelCoder::code_base(BitCoder& coder, BaseMesh& base) {
   for (Vec3i& position : base.positions)
     if (!points_.code_base(coder, position) || !coder.goes_on()) return false;
   positions_ = base.positions;
+  moved_.assign(positions_.size(), 1);
   std::vector<Index> corners = base.corners, wedges;
   for (std::size_t c = 0; c < corners.size(); ++c) wedges.push_back(wedges_.begin(corners[c]) + base.wedges[c]);
   for (std::size_t c = 0; c < corners.size(); c += 3) rotate_face(&corners[c], &wedges[c]);
@@ -63,6 +65,69 @@ bool LevelCoder::code_base(BitCoder& coder, BaseMesh& base) {
 
 bool LevelCoder::code_base_attributes(BitCoder& coder, std::span<const std::vector<std::int32_t>> given) {
   return attributes_.code_base(coder, mesh_, wedges_, positions_, given);
+}
+
+bool LevelCoder::code_step(BitCoder& coder, int& step) {
+  step = static_cast<int>(coder.code_raw(static_cast<std::uint32_t>(step), 4));
+  if (step > limits_.grid_bits - kLeastStepBits) return false;
+  move_coder_.start(step_, step, positions_.size());
+  points_.set_step(step);
+  step_ = step;
+  return true;
+}
+
+/// Codes where a vertex goes.
+bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std::span<const Vec3i> targets) {
+  if (++move_count_ > kMostMovesEach * limits_.most_vertices) return false;
+  Vec3i to = targets.empty() ? Vec3i{} : targets[vertex];
+  move_coder_.code(coder, mesh_, vertex, half, positions_, points_.normals(), to);
+  if (!points_.is_on_grid(to)) return false;
+  if (!(to == positions_[vertex])) moves_.push_back({star, vertex, positions_[vertex], to});
+  positions_[vertex] = to;
+  moved_[vertex] = 1;
+  --unmoved_count_;
+  return true;
+}
+
+bool LevelCoder::code_moves(BitCoder& coder, std::span<const Vec3i> targets) {
+  moves_.clear();
+  if (unmoved_count_ == 0) return true;
+  points_.start_round(mesh_, positions_);
+  Index star = 0;
+  const auto move_ends = [&](Index half) {
+    const Index from = mesh_.from(half), to = mesh_.to(half);
+    if (moved_[from] == 0 && !move(coder, from, half, star, targets)) return false;
+    return moved_[to] != 0 || move(coder, to, next_corner(half), star, targets);
+  };
+  for (const Index half : patches_.ears) {
+    if (!move_ends(half)) return false;
+    ++star;
+  }
+  Index begin = 0;
+  for (const RoundPatches::Patch& patch : patches_.patches) {
+    for (Index i = begin; i < patch.polygon_end; ++i)
+      if (!move_ends(patches_.polygons[i])) return false;
+    begin = patch.polygon_end;
+    ++star;
+  }
+  return true;
+}
+
+bool LevelCoder::code_stage_end(BitCoder& coder, bool& ends, std::span<const Vec3i> targets) {
+  ends = code_flag(coder, kStageEnds, ends);
+  moved_.resize(positions_.size(), 1);
+  if (!ends) return true;
+  if (unmoved_count_ > 0) {
+    points_.start_round(mesh_, positions_);
+    std::vector<Index> half(positions_.size(), kNoIndex);
+    for (Index h = 0; h < 3 * mesh_.face_count(); ++h)
+      if (half[mesh_.from(h)] == kNoIndex) half[mesh_.from(h)] = h;
+    for (Index vertex = 0; vertex < positions_.size(); ++vertex)
+      if (moved_[vertex] == 0 && !move(coder, vertex, half[vertex], kNoIndex, targets)) return false;
+  }
+  moved_.assign(positions_.size(), 0);
+  unmoved_count_ = positions_.size();
+  return true;
 }
 
 bool LevelCoder::code_patches(BitCoder& coder, const PatchPlan* plan) {

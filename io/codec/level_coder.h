@@ -10,6 +10,7 @@
 #include "codec/bit_coder.h"
 #include "codec/bit_mixer.h"
 #include "codec/loose_coder.h"
+#include "codec/move_coder.h"
 #include "codec/patch_coder.h"
 #include "codec/patch_mesh.h"
 #include "codec/point_coder.h"
@@ -84,6 +85,13 @@ struct LooseVertex {
   Vec3i position;
 };
 
+/// Where a vertex of the level goes in a round.
+struct CodedMove {
+  Index star = 0;  ///< of the round: the move belongs to its vertex; kNoIndex: to the round's last one
+  Index vertex = 0;
+  Vec3i from, to;
+};
+
 /// The level that the rounds so far lead to, and the models that code the next: the same for writer and reader. A round
 /// is coded by the functions from `code_patches` on, in their order.
 class LevelCoder {
@@ -96,7 +104,8 @@ class LevelCoder {
   }
   /// Lets levels from now on have so many more vertices, wedges and faces than this one has, and no more.
   void allow(std::uint64_t vertices, std::uint64_t wedges, std::uint64_t faces);
-  /// Whether the polygons so far have no more corners than a reader allows at the end of a chunk that ends here.
+  /// Whether the polygons so far have no more corners, and there were no more moves, than a reader allows at the end of
+  /// a chunk that ends here.
   bool may_end_chunk() const;
 
   const PatchMesh& mesh() const { return mesh_; }
@@ -116,8 +125,13 @@ class LevelCoder {
   /// Codes the attributes of the base mesh. `given`: by attribute, the numbers of all wedges, of a writer.
   bool code_base_attributes(BitCoder& coder, std::span<const std::vector<std::int32_t>> given);
 
+  /// Codes how fine positions are from now on: multiples of 2^step. False where what is read is no step.
+  bool code_step(BitCoder& coder, int& step);
+
   /// Codes where a round's patches and ears are.
   bool code_patches(BitCoder& coder, const PatchPlan* plan);
+  /// Codes where the vertices around them go that have not gone there yet. `targets`: by vertex, of a writer.
+  bool code_moves(BitCoder& coder, std::span<const Vec3i> targets);
   /// Codes which of them belong to one vertex, and puts their stars there. `joins`: by star, the first of its vertex.
   bool code_places(BitCoder& coder, std::span<const Index> joins);
   bool code_wedges(BitCoder& coder, const WedgePlan* plan);
@@ -125,6 +139,12 @@ class LevelCoder {
   bool code_points(BitCoder& coder, std::span<const Vec3i> given);
   /// Codes how many loose vertices the round has besides, and after that each of them. False where a round has none at
   /// all, or more than there may be.
+  /// Codes whether vertices go elsewhere from the next round on, and if so where those go that this round and those
+  /// before have not moved.
+  bool code_stage_end(BitCoder& coder, bool& ends, std::span<const Vec3i> targets);
+  const std::vector<CodedMove>& moves() const { return moves_; }
+  /// Whether a vertex lies where it stays up to the end of the stage.
+  bool is_placed(Index vertex) const { return vertex >= moved_.size() || moved_[vertex] != 0; }
   bool code_loose_count(BitCoder& coder, Index& count);
   bool code_loose_vertex(BitCoder& coder, LooseVertex& vertex);
   /// Codes the attributes of the round's wedges that have none yet. `given`: by attribute, their numbers, of a writer.
@@ -140,6 +160,7 @@ class LevelCoder {
   bool code_flag(BitCoder& coder, std::uint32_t which, bool is);
   std::uint64_t corners_left() const;
   Vec3i guess_loose() const;
+  bool move(BitCoder& coder, Index vertex, Index half, Index star, std::span<const Vec3i> targets);
 
   LevelLimits limits_;
   PatchMesh mesh_;
@@ -150,13 +171,20 @@ class LevelCoder {
   WedgeCoder wedge_coder_;
   LooseCoder loose_coder_;
   PointCoder points_;
+  MoveCoder move_coder_;
   AttributeCoder attributes_;
   BitMixer flags_;
   std::uint32_t round_number_ = 0;
   bool has_seams_ = false;     // in the level before the round
   std::uint64_t corners_ = 0;  // of the polygons of all sectors
 
+  int step_ = 0;                     // positions are multiples of 2^this
+  std::vector<std::uint8_t> moved_;  // by vertex: whether it lies where it stays up to the end of the stage
+  std::size_t unmoved_count_ = 0;
+  std::uint64_t move_count_ = 0;
+
   RoundPatches patches_;
+  std::vector<CodedMove> moves_;
   NewStars stars_;
   NewVertices vertices_;
   SectorList sectors_;

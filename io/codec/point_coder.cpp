@@ -15,10 +15,6 @@ namespace lodestone::detail {
 namespace {
 
 constexpr std::int64_t kOne = 256;  // what a ring's radius is in features
-constexpr std::int64_t kLeastVariance = 1 << 10;
-constexpr std::int64_t kMostRatio = std::int64_t{1} << 32;
-constexpr std::int64_t kMostResidual = std::int64_t{1} << 26;
-constexpr std::int64_t kRoundness = 20;  // / 256: how much of the spread does not follow the ring's shape
 
 // Until something is learnt: sixteenths of logarithms over the radius.
 constexpr int kUsualNormalMiss = -48;
@@ -27,42 +23,6 @@ constexpr int kUsualTangentMiss = -32;
 constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
 
 Vec3i over_radius(const Vec3i& v, std::int64_t radius) { return v * kOne / radius; }
-
-/// A normal distribution of three coordinates, taken apart: each one's mean and variance given those before it.
-struct Coordinates {
-  std::array<int, 3> order = {0, 1, 2};
-  std::array<std::int64_t, 3> variance{};  // kRatioBits, as the ratios
-  std::int64_t second_of_first = 0, third_of_first = 0, third_of_second = 0;
-};
-
-std::int64_t product(std::int64_t x, std::int64_t ratio) { return x * ratio >> kRatioBits; }
-
-std::int64_t ratio_of(std::int64_t x, std::int64_t y) {
-  return std::clamp(x * (std::int64_t{1} << kRatioBits) / y, -kMostRatio, kMostRatio);
-}
-
-/// `normal_variance`: over that across the normal. The coordinate that is steepest comes last.
-Coordinates take_apart(const Ring& ring, std::int64_t normal_variance) {
-  const Vec3i& n = ring.normal;
-  const auto covariance = [&](int i, int j) {
-    const std::int64_t normal = n[i] * n[j] >> (2 * kUnitBits - kRatioBits);
-    const std::int64_t across = (i == j ? std::int64_t{1} << kRatioBits : 0) - normal;
-    return product(normal, normal_variance) + ((across * kRoundness + ring.spread[i][j] * (kOne - kRoundness)) >> 8);
-  };
-  Coordinates c;
-  std::stable_sort(c.order.begin(), c.order.end(), [&](int i, int j) { return std::abs(n[i]) < std::abs(n[j]); });
-  const auto [x, y, z] = c.order;
-  const std::int64_t xy = covariance(x, y), xz = covariance(x, z);
-  c.variance[0] = std::max(covariance(x, x), kLeastVariance);
-  c.second_of_first = ratio_of(xy, c.variance[0]);
-  c.third_of_first = ratio_of(xz, c.variance[0]);
-  c.variance[1] = std::max(covariance(y, y) - product(xy, c.second_of_first), kLeastVariance);
-  const std::int64_t yz = covariance(y, z) - product(xz, c.second_of_first);
-  c.third_of_second = ratio_of(yz, c.variance[1]);
-  c.variance[2] =
-      std::max(covariance(z, z) - product(xz, c.third_of_first) - product(yz, c.third_of_second), kLeastVariance);
-  return c;
-}
 
 }  // namespace
 
@@ -81,21 +41,22 @@ bool PointCoder::is_on_grid(const Vec3i& position) const {
 bool PointCoder::code_base(BitCoder& coder, Vec3i& position) {
   misses_.emplace_back();
   base_count_ = misses_.size();
-  const std::int64_t half = std::int64_t{16} << (grid_bits_ - 1);
+  const std::int64_t half = std::int64_t{16} << (grid_bits_ - 1 - shift_);
   NumberCoder::Guess guess;
   guess.value = half;
   guess.scale = half / 4;
-  for (int c = 0; c < 3; ++c) position[c] = base_.code(coder, position[c], guess);
+  for (int c = 0; c < 3; ++c)
+    position[c] = base_.code(coder, position[c] >> shift_, guess) * (std::int64_t{1} << shift_);
   return is_on_grid(position);
 }
 
 bool PointCoder::code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position) {
   misses_.push_back({kUsualNormalMiss, kUsualTangentMiss});
   NumberCoder::Guess likely;
-  likely.scale = std::int64_t{16} << (grid_bits_ - 5);
+  likely.scale = std::max<std::int64_t>(std::int64_t{16} << (grid_bits_ - 5) >> shift_, 1);
   for (int c = 0; c < 3; ++c) {
-    likely.value = guess[c] * 16;
-    position[c] = loose_.code(coder, position[c], likely);
+    likely.value = guess[c] * 16 >> shift_;
+    position[c] = loose_.code(coder, position[c] >> shift_, likely) * (std::int64_t{1} << shift_);
   }
   return is_on_grid(position);
 }
@@ -175,33 +136,6 @@ void PointCoder::predict_size() {
   prediction_.size = {size(normal_size_, prediction_.normal_traits), size(tangent_size_, prediction_.tangent_traits)};
 }
 
-void PointCoder::code_coordinates(BitCoder& coder, Vec3i& position) {
-  const Miss& size = prediction_.size;
-  const int log_ratio = std::clamp(2 * (size.normal - size.tangent), -16 * 12, 32);
-  const Coordinates c = take_apart(ring_, exp2_16(log_ratio + 16 * kRatioBits));
-  const std::int64_t sigma = exp2_16(size.tangent);
-  NumberCoder::Guess guess;
-  guess.hints[2] =
-      NumberCoder::hint(ring_.size() - 3, 0, 1) % 4 * 4 + NumberCoder::hint(size.tangent - size.normal, -16, 32) / 4;
-  if (ring_.size() > 6) guess.hints[2] = 12 + NumberCoder::hint(size.tangent - size.normal, -16, 32) / 4;
-  const auto code = [&](std::uint32_t which, std::int64_t mean) {
-    const int axis = c.order[which];
-    guess.value = prediction_.point[axis] + mean;
-    const std::uint32_t root = square_root(static_cast<std::uint64_t>(c.variance[which]) << kRatioBits);
-    guess.scale = sigma * root >> kRatioBits;
-    guess.kind = which;
-    guess.hints[0] = NumberCoder::hint(static_cast<int>(std::abs(ring_.normal[axis])), 0, 1025);
-    guess.hints[1] =
-        has_misses_ ? std::min(14U, NumberCoder::hint(which == 2 ? around_.normal : around_.tangent, -128, 8)) : 15;
-    position[axis] = numbers_.code(coder, position[axis], guess);
-    return std::clamp((position[axis] * 16) - prediction_.point[axis], -kMostResidual, kMostResidual);
-  };
-  const std::int64_t first = code(0, 0);
-  const std::int64_t second_mean = std::clamp(product(first, c.second_of_first), -kMostResidual, kMostResidual);
-  const std::int64_t second = code(1, second_mean);
-  code(2, product(first, c.third_of_first) + product(second - second_mean, c.third_of_second));
-}
-
 void PointCoder::learn(const Vec3i& position, bool closed) {
   const Vec3i& n = ring_.normal;
   const Vec3i shift = over_radius(position * 16 - ring_.mean, ring_.radius);
@@ -227,11 +161,15 @@ void PointCoder::learn(const Vec3i& position, bool closed) {
 
 bool PointCoder::code(BitCoder& coder, const PatchMesh& mesh, std::span<const Index> star, bool closed,
                       std::span<const Vec3i> positions, Vec3i& position) {
-  ring_.look(mesh, star, closed, positions, normals_);
+  outer_.clear();
+  for (const Index face : star) outer_.push_back(3 * face + 1);
+  ring_.look(mesh, outer_, closed, positions, normals_);
   find_misses();
   predict(closed);
   predict_size();
-  code_coordinates(coder, position);
+  CoordinateCoder::Expected expected = {prediction_.point, prediction_.size, std::clamp(ring_.size() - 3, 0, 3), {}};
+  if (has_misses_) expected.around = around_;
+  coordinates_.code(coder, ring_, expected, shift_, position);
   if (!is_on_grid(position)) return false;
   learn(position, closed);
   return true;

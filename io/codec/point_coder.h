@@ -8,6 +8,7 @@
 #include <lodestone/core/ids.h>
 
 #include "codec/bit_coder.h"
+#include "codec/coordinate_coder.h"
 #include "codec/fixed_point.h"
 #include "codec/number_coder.h"
 #include "codec/online_fit.h"
@@ -20,6 +21,11 @@ namespace lodestone::detail {
 class PointCoder {
  public:
   explicit PointCoder(int grid_bits);
+
+  /// From now on coordinates are multiples of 2^shift.
+  void set_step(int shift) { shift_ = shift; }
+  bool is_on_grid(const Vec3i& position) const;
+  std::span<const Vec3i> normals() const { return normals_; }
 
   /// Codes the next vertex of the base mesh. False where what is read lies off the grid.
   bool code_base(BitCoder& coder, Vec3i& position);
@@ -43,11 +49,6 @@ class PointCoder {
   using Pulls = OnlineFit<Ring::kPulls>;
   using Traits = OnlineFit<kTraits>;
 
-  /// How wrong a prediction was: sixteenths of the logarithm of its error's two parts over the ring's radius.
-  struct Miss {
-    int normal = 0;
-    int tangent = 0;
-  };
   struct Prediction {
     Vec3i point;
     Miss size;  // expected, sixteenths of the logarithm in sixteenths of a step
@@ -60,22 +61,22 @@ class PointCoder {
   void predict(bool closed);
   void predict_size();
   void learn(const Vec3i& position, bool closed);
-  void code_coordinates(BitCoder& coder, Vec3i& position);
   std::size_t size_class(bool closed) const;
-  bool is_on_grid(const Vec3i& position) const;
 
   int grid_bits_;
+  int shift_ = 0;
   NumberCoder base_;
   NumberCoder loose_;
-  NumberCoder numbers_;
+  CoordinateCoder coordinates_;
   std::vector<Pulls> normal_pulls_, tangent_pulls_;  // by class of ring size
   Traits normal_size_, tangent_size_;
 
   std::vector<Vec3i> normals_;  // by vertex of the level before the round
-  std::vector<Miss> misses_;    // by vertex
+  std::vector<Miss> misses_;    // by vertex, over the ring's radius
   std::size_t base_count_ = 0;
 
   // Of the vertex at hand.
+  std::vector<Index> outer_;
   Ring ring_;
   Miss around_;  // mean of those around
   bool has_misses_ = false;

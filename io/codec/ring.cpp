@@ -18,26 +18,26 @@ Vec3i unit(Vec3i v) {
   return v * kOne / length;
 }
 
-void Ring::look(const PatchMesh& mesh, std::span<const Index> star, bool closed, std::span<const Vec3i> positions,
+void Ring::look(const PatchMesh& mesh, std::span<const Index> outer, bool closed, std::span<const Vec3i> positions,
                 std::span<const Vec3i> normals) {
   corners_.clear();
   beyond_.clear();
   points_.clear();
-  for (const Index face : star) {
-    corners_.push_back(mesh.from(3 * face + 1));
-    const Index twin = mesh.twin(3 * face + 1);
+  for (const Index half : outer) {
+    corners_.push_back(mesh.from(half));
+    const Index twin = mesh.twin(half);
     if (twin != kNoIndex) beyond_.push_back(mesh.apex(twin));
   }
-  if (!closed) corners_.push_back(mesh.to(3 * star.back() + 1));
+  if (!closed) corners_.push_back(mesh.to(outer.back()));
   for (const Index corner : corners_) points_.push_back(positions[corner] * 16);
-  find_mean(star, closed);
-  find_pulls(mesh, star, positions, normals);
+  find_mean(outer, closed);
+  find_pulls(mesh, outer, positions, normals);
   find_spread();
 }
 
-void Ring::find_mean(std::span<const Index> star, bool closed) {
+void Ring::find_mean(std::span<const Index> outer, bool closed) {
   Vec3i sum, area;
-  for (std::size_t i = 0; i < star.size(); ++i) {
+  for (std::size_t i = 0; i < outer.size(); ++i) {
     const Vec3i& p = points_[i];
     const Vec3i& q = points_[i + 1 < points_.size() ? i + 1 : 0];
     sum = sum + p;
@@ -45,28 +45,28 @@ void Ring::find_mean(std::span<const Index> star, bool closed) {
     area = area + Vec3i{turn.x >> 8, turn.y >> 8, turn.z >> 8};
   }
   normal = unit(area);
-  mean = closed ? divide(sum, static_cast<std::int64_t>(star.size())) : divide(points_.front() + points_.back(), 2);
+  mean = closed ? divide(sum, static_cast<std::int64_t>(outer.size())) : divide(points_.front() + points_.back(), 2);
   std::uint64_t squares = 0, least = ~std::uint64_t{0};
-  for (std::size_t i = 0; i < star.size(); ++i) {
+  for (std::size_t i = 0; i < outer.size(); ++i) {
     const std::uint64_t square = squared(points_[i] - mean);
     squares += square;
     least = std::min(least, square);
   }
-  radius = std::max<std::int64_t>(kLeastRadius, square_root(squares / star.size()));
+  radius = std::max<std::int64_t>(kLeastRadius, square_root(squares / outer.size()));
   log_least = log2_16(least) / 2;
 }
 
-void Ring::find_pulls(const PatchMesh& mesh, std::span<const Index> star, std::span<const Vec3i> positions,
+void Ring::find_pulls(const PatchMesh& mesh, std::span<const Index> outer, std::span<const Vec3i> positions,
                       std::span<const Vec3i> normals) {
   Vec3i beyond, edges, parallelograms, planes;
   std::int64_t edge_weight = 0, parallelogram_weight = 0, distance = 0;
-  for (std::size_t i = 0; i < star.size(); ++i) {
+  for (std::size_t i = 0; i < outer.size(); ++i) {
     const Vec3i& p = points_[i];
     const Vec3i& q = points_[i + 1 < points_.size() ? i + 1 : 0];
     const std::int64_t length = square_root(squared(p - q)) + 1;
     edges = edges + (p + q) * length;
     edge_weight += 2 * length;
-    const Index twin = mesh.twin(3 * star[i] + 1);
+    const Index twin = mesh.twin(outer[i]);
     if (twin == kNoIndex) continue;
     const Vec3i o = positions[mesh.apex(twin)] * 16;
     beyond = beyond + o;
@@ -86,7 +86,7 @@ void Ring::find_pulls(const PatchMesh& mesh, std::span<const Index> star, std::s
   pulls[1] = divide(edges, edge_weight) - mean;
   pulls[2] = count == 0 ? Vec3i{} : divide(parallelograms, parallelogram_weight) - mean;
   pulls[3] = divide(planes, size());
-  log_edge = log2_16(static_cast<std::uint64_t>(edge_weight) / (2 * star.size()));
+  log_edge = log2_16(static_cast<std::uint64_t>(edge_weight) / (2 * outer.size()));
   log_beyond = count == 0 ? 0 : log2_16(static_cast<std::uint64_t>(distance / count + 1));
 }
 

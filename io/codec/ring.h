@@ -42,8 +42,9 @@ class Ring {
  public:
   static constexpr int kPulls = 4;
 
-  /// Looks at the star of a vertex, which is first in each of its faces; `normals` are those of the vertices around.
-  void look(const PatchMesh& mesh, std::span<const Index> star, bool closed, std::span<const Vec3i> positions,
+  /// Looks at the star of a vertex: `outer`, the half-edges across from it, in order; `normals` are those of the
+  /// vertices around.
+  void look(const PatchMesh& mesh, std::span<const Index> outer, bool closed, std::span<const Vec3i> positions,
             std::span<const Vec3i> normals);
 
   std::span<const Index> corners() const { return corners_; }
@@ -63,8 +64,8 @@ class Ring {
   int log_beyond = 0;              ///< of the mean distance of the vertices beyond
 
  private:
-  void find_mean(std::span<const Index> star, bool closed);
-  void find_pulls(const PatchMesh& mesh, std::span<const Index> star, std::span<const Vec3i> positions,
+  void find_mean(std::span<const Index> outer, bool closed);
+  void find_pulls(const PatchMesh& mesh, std::span<const Index> outer, std::span<const Vec3i> positions,
                   std::span<const Vec3i> normals);
   void find_spread();
 

@@ -50,10 +50,10 @@ void RoundPlanner::note_faces(Index record) {
   }
 }
 
-Index RoundPlanner::take_round(Index first) {
+Index RoundPlanner::take_round(Index first, Index last) {
   ++round_;
   Index record = first;
-  for (; record < mesh_.record_count() && (is_loose(record) || is_ready(record, first)); ++record) note_faces(record);
+  for (; record < last && (is_loose(record) || is_ready(record, first)); ++record) note_faces(record);
   return record;
 }
 

@@ -32,9 +32,9 @@ class RoundPlanner {
 
   RoundPlanner(const ProgressiveMesh& mesh, const CodedNumbers& coded, const PatchMesh& level);
 
-  /// Takes records, from one on, while none needs what another of them makes; pieces that vanish are let pass. Returns
-  /// the first of the next round.
-  Index take_round(Index first);
+  /// Takes records, from one on and before another, while none needs what another of them makes; pieces that vanish are
+  /// let pass. Returns the first of the next round.
+  Index take_round(Index first, Index last);
   /// Plans a round. The listener hears of every record and may end it early.
   void plan(Index first, Index end, WorkListener& listener);
 

@@ -286,6 +286,8 @@ Result<std::vector<std::byte>> encode_stream(const ProgressiveMesh& mesh, const 
     return fail(ErrorCode::InvalidArgument,
                 text("zstd_level is ", options.zstd_level, ", not in 1 to ", kMaxZstdLevel));
   LODESTONE_CHECK(validate(mesh));
+  if (!mesh.moves.empty())
+    return fail(ErrorCode::Unsupported, "streams of version 2 have no records that move vertices");
   LODESTONE_CHECK(check_limits(mesh));
   return StreamWriter(mesh, options).write();
 }

@@ -19,6 +19,8 @@ void for_each_array(Mesh& mesh, const Visit& visit) {
   visit(mesh.polygons);
   visit(mesh.slots);
   visit(mesh.triangles);
+  visit(mesh.move_begin);
+  visit(mesh.moves);
   visit(mesh.round_begin);
   visit(mesh.deviation);
   visit(mesh.curvature_error);
@@ -44,6 +46,10 @@ void MeshMark::restore(ProgressiveMesh& mesh) const {
   mesh.polygons.resize(corners);
   mesh.slots.resize(slots);
   mesh.triangles.resize(3 * slots);
+  if (!mesh.move_begin.empty()) {
+    mesh.move_begin.resize(position_ + 1);
+    mesh.moves.resize(mesh.move_begin.back());
+  }
   mesh.round_begin.resize(round_count_);
   mesh.deviation.resize(position_ + 1);
   mesh.curvature_error.resize(position_ + 1);

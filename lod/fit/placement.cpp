@@ -43,6 +43,7 @@ constexpr double kStay = 0.02;       // how much a vertex wants to stay, of the 
 constexpr double kCornerStay = 1e6;  // the same where lines end or meet
 constexpr double kAlong = 0.05;      // what distance along the surface or line counts, of distance from it
 constexpr double kLineWeight = 2;    // of lines against surfaces, at equal length
+constexpr double kStayAside = 10;    // what a full mesh's vertex wants to stay aside of its normal, where that counts
 constexpr double kRoam = 1.25;       // how far out of the original's box, of the rms distance around a vertex
 
 // Many faces of a level that keeps so large a share of them are the original's own. Sums of distances leave them where
@@ -157,9 +158,12 @@ Original::Original(const Mesh& given, const Progress& progress)
   skin_walk.emplace(*skin);
 }
 
+/// What a fit may change: everything, or how high vertices lie above where they were, and a little aside.
+enum class Freedom { All, Heights };
+
 class Fitting {
  public:
-  Fitting(const Original& original, Mesh& level, const PlacementOptions& options)
+  Fitting(const Original& original, Mesh& level, const PlacementOptions& options, Freedom freedom)
       : original_(original),
         level_(level),
         is_fine_(static_cast<double>(level.face_count()) >=
@@ -169,25 +173,28 @@ class Fitting {
         edges_(list_edges(level)),
         guard_(*original.skin, *original.skin_index, *original.skin_walk, steps_),
         fixed_(find_fixed(original.mesh, level, options.fixed)),
+        freedom_(freedom),
         samples_(original.mesh, original.face_order,
                  effort_for(options.effort, 0).samples_per_face * level.face_count()),
         effort_(effort_for(options.effort, samples_.all().size())),
         near_line_(original.lines->all().size(), kNoIndex) {
     classify();
+    if (freedom_ == Freedom::Heights) note_places();
   }
 
   void run();
+  double mean_square() const;  ///< of the samples' distances
 
  private:
   /// Hears whether the fit is still wanted.
   bool goes_on() const { return progress_.add(0); }
   void classify();
+  void note_places();
   void search(double squared_distance);
   void follow();
   void fence();
   void choose_norm();
   double error() const;
-  double mean_square() const;
   void turn_edges();
   void assemble(SparseSystem& system);
   void add_faces(SparseSystem& system) const;
@@ -206,7 +213,11 @@ class Fitting {
   std::optional<SparseSystem> system_;  // the same
   OriginalGuard guard_;
   std::vector<std::uint8_t> fixed_;  // by vertex
-  std::vector<double> roam_;         // by vertex: how far it may leave the box
+  Freedom freedom_;
+  // Where heights are free above all: by vertex, as the level was given.
+  std::vector<Vec3> places_, normals_;
+  double stay_aside_ = 0;     // how much a vertex wants to stay aside of its normal, of the weight of its samples
+  std::vector<double> roam_;  // by vertex: how far it may leave the box
   SampleNorm norm_;
   SurfaceSamples samples_;
   Effort effort_;
@@ -219,6 +230,16 @@ void Fitting::classify() {
   for (const MeshEdge& edge : edges_)
     for (const Index v : edge.vertices)
       if (edge.constrained && line_ends_[v] < 255) ++line_ends_[v];
+}
+
+void Fitting::note_places() {
+  stay_aside_ =
+      kStayAside * static_cast<double>(level_.face_count()) / static_cast<double>(original_.mesh.face_count());
+  normals_.resize(level_.vertex_count());
+  for (Index f = 0; f < level_.face_count(); ++f)
+    for (Index c = 3 * f; c < 3 * f + 3; ++c) normals_[level_.corner_vertex(c)] += area_vector(level_, f);
+  for (Vec3& normal : normals_) normal = normalized(normal);
+  for (const Vec3f& p : level_.positions) places_.emplace_back(p);
 }
 
 /// Finds the face nearest to each sample that is no nearer than that to where it belongs now, wherever that face is.
@@ -325,6 +346,9 @@ void Fitting::assemble(SparseSystem& system) {
     const bool stays = fixed_[v] != 0 || (line_ends_[v] != 0 && line_ends_[v] != 2);
     const double weight = (stays ? kCornerStay : kStay) * system.stiffness(v);
     system.add(&v, &one, 1, Vec3(level_.positions[v]), Symmetric3::identity(weight > 0 ? weight : 1));
+    if (freedom_ == Freedom::All || !(system.stiffness(v) > 0)) continue;
+    const double aside = stay_aside_ * system.stiffness(v);
+    system.add(&v, &one, 1, places_[v], Symmetric3::identity(aside) + Symmetric3::outer(normals_[v], -aside));
   }
 }
 
@@ -458,7 +482,7 @@ void Fitting::run() {
   progress_.reach(kFirstShare);
   const Progress moves = progress_.part(1 - kFirstShare);
   for (int i = 0; i < effort_.moves && !progress_.is_cancelled(); ++i) {
-    if (i < effort_.turning) turn_edges();
+    if (i < effort_.turning && freedom_ == Freedom::All) turn_edges();
     move();
     const bool looks_everywhere = effort_.search_every > 0 && (i + 1) % effort_.search_every == 0;
     follow();
@@ -478,10 +502,10 @@ void Fitting::run() {
 }
 
 /// Leaves out vertices and wedges that no face uses.
-Mesh compacted(const Mesh& mesh) {
+Mesh compacted(const Mesh& mesh, std::vector<Index>* source_vertex = nullptr) {
   std::vector<Index> faces(mesh.face_count());
   std::iota(faces.begin(), faces.end(), Index{0});
-  return pick_faces(mesh, faces);
+  return pick_faces(mesh, faces, source_vertex);
 }
 
 }  // namespace
@@ -506,11 +530,25 @@ Mesh LevelFitter::fit(const Mesh& level, const PlacementOptions& options) const 
   if (fitted.face_count() == 0 || impl_->original.mesh.face_count() == 0) return fitted;
   if (!impl_->attributes) return fitted;
   Mesh before = fitted;
-  Fitting(impl_->original, fitted, options).run();
+  Fitting(impl_->original, fitted, options, Freedom::All).run();
   if (options.progress.is_cancelled()) return before;
   impl_->attributes->look_up(before, fitted);
   options.progress.reach(1);
   return fitted;
+}
+
+LevelFitter::Places LevelFitter::find_places(const Mesh& level, const PlacementOptions& options) const {
+  Places places = {level.positions, 0};
+  std::vector<Index> source;
+  Mesh fitted = compacted(level, &source);
+  if (fitted.face_count() == 0 || impl_->original.mesh.face_count() == 0 || !impl_->attributes) return places;
+  Fitting fitting(impl_->original, fitted, options, Freedom::Heights);
+  fitting.run();
+  if (options.progress.is_cancelled()) return places;
+  for (Index v = 0; v < source.size(); ++v) places.positions[source[v]] = fitted.positions[v];
+  places.rms = std::sqrt(fitting.mean_square());
+  options.progress.reach(1);
+  return places;
 }
 
 Mesh optimise_placement(const Mesh& original, const Mesh& level, const PlacementOptions& options) {

@@ -87,8 +87,7 @@ void Cursor::coarsen() {
 Mesh extract_level(const ProgressiveMesh& mesh, const Cursor& cursor) {
   Mesh level;
   const std::size_t wedge_count = cursor.wedge_count();
-  level.positions.assign(mesh.positions.begin(),
-                         mesh.positions.begin() + static_cast<std::ptrdiff_t>(cursor.vertex_count()));
+  level.positions = positions_at(mesh, cursor.position());
   level.wedge_vertex.assign(mesh.wedge_vertex.begin(),
                             mesh.wedge_vertex.begin() + static_cast<std::ptrdiff_t>(wedge_count));
   for (const Attribute& attribute : mesh.attributes) {

@@ -88,12 +88,31 @@ Result<void> check_arrays(const ProgressiveMesh& mesh) {
   return {};
 }
 
+bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+/// Checks that moves name vertices that are there, and go on from where those lie.
+Result<void> check_moves(const ProgressiveMesh& mesh) {
+  if (mesh.move_begin.empty()) return expect_size("moves", mesh.moves.size(), 0);
+  LODESTONE_CHECK(expect_size("move_begin", mesh.move_begin.size(), mesh.record_count() + 1));
+  LODESTONE_CHECK(expect_offsets("move_begin", mesh.move_begin, 0, mesh.moves.size()));
+  std::vector<Vec3f> positions = mesh.positions;
+  for (std::size_t k = 0; k < mesh.record_count(); ++k)
+    for (const VertexMove& move : mesh.moves_of(k)) {
+      if (move.vertex >= mesh.base_vertex_count + k)
+        return defect(text(numbered("record", k), " moves vertex ", move.vertex, " before it exists"));
+      if (!(move.from == positions[move.vertex]) || !is_finite(move.to))
+        return defect(
+            text(numbered("record", k), " moves vertex ", move.vertex, " from where it does not lie, or to nowhere"));
+      positions[move.vertex] = move.to;
+    }
+  return {};
+}
+
 Result<void> check_values(const ProgressiveMesh& mesh) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3f& p = mesh.positions[v];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      return defect(numbered("vertex", v) + " has a position that is not finite");
+    if (!is_finite(mesh.positions[v])) return defect(numbered("vertex", v) + " has a position that is not finite");
   }
+  LODESTONE_CHECK(check_moves(mesh));
   for (std::size_t p = 0; p < mesh.deviation.size(); ++p)
     if (!is_error(mesh.deviation[p]) || !is_error(mesh.curvature_error[p]))
       return defect(numbered("position", p) + " has an error that is negative or not finite");
@@ -183,6 +202,14 @@ Result<void> check_coarse_faces(const ProgressiveMesh& mesh) {
 }
 
 }  // namespace
+
+std::vector<Vec3f> positions_at(const ProgressiveMesh& mesh, Index position) {
+  const auto count = static_cast<std::ptrdiff_t>(mesh.base_vertex_count + std::size_t{position});
+  std::vector<Vec3f> positions(mesh.positions.begin(), mesh.positions.begin() + count);
+  const std::size_t moves = mesh.move_begin.empty() ? 0 : mesh.move_begin[position];
+  for (const VertexMove& move : std::span(mesh.moves).first(moves)) positions[move.vertex] = move.to;
+  return positions;
+}
 
 std::vector<Index> face_counts(const ProgressiveMesh& mesh) {
   Index count = 0;

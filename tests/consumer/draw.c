@@ -42,10 +42,18 @@ static int upload(lodestone_stream* stream, lodestone_cursor* cursor, buffers* t
   const size_t floats = 3 * (wedges.end - wedges.begin);
   to->positions = realloc(to->positions, 3 * wedges.end * sizeof *to->positions + 1);
   if (to->positions == NULL) return 0;
-  if (!check(stream, lodestone_stream_copy_positions(stream, (uint32_t)wedges.begin, (uint32_t)wedges.end,
+  if (!check(stream, lodestone_cursor_copy_positions(cursor, (uint32_t)wedges.begin, (uint32_t)wedges.end,
                                                      to->positions + 3 * wedges.begin, floats)))
     return 0;
   to->uploaded_bytes += floats * sizeof(float);
+  if (!check(stream, lodestone_cursor_take_moved_wedges(cursor, 64, ranges, 16, &count))) return 0;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t moved = 3 * (ranges[i].end - ranges[i].begin);
+    if (!check(stream, lodestone_cursor_copy_positions(cursor, (uint32_t)ranges[i].begin, (uint32_t)ranges[i].end,
+                                                       to->positions + 3 * ranges[i].begin, moved)))
+      return 0;
+    to->uploaded_bytes += moved * sizeof(float);
+  }
 
   if (!check(stream, lodestone_cursor_get_corners(cursor, 0, &corners, &corner_count))) return 0;
   if (!check(stream, lodestone_cursor_take_changes(cursor, 0, 256, ranges, 16, &count))) return 0;

@@ -25,10 +25,14 @@ struct Buffers {
 void upload(const lodestone::ProgressiveMesh& mesh, lodestone::DrawCursor& cursor, Buffers& buffers) {
   const lodestone::EntryRange wedges = cursor.take_new_wedges();
   buffers.positions.resize(3 * wedges.end);
-  lodestone::copy_positions(mesh, wedges, buffers.positions.data() + 3 * wedges.begin);
-  buffers.uploaded_bytes += 3 * wedges.size() * sizeof(float);
-  buffers.corners.resize(cursor.group_count());
   std::vector<lodestone::EntryRange> ranges;
+  cursor.take_moved_wedges(64, ranges);
+  ranges.push_back(wedges);
+  for (const lodestone::EntryRange& range : ranges) {
+    lodestone::copy_positions(mesh, cursor, range, buffers.positions.data() + 3 * range.begin);
+    buffers.uploaded_bytes += 3 * range.size() * sizeof(float);
+  }
+  buffers.corners.resize(cursor.group_count());
   for (std::size_t group = 0; group < cursor.group_count(); ++group) {
     cursor.take_changes(group, 256, ranges);
     for (const lodestone::EntryRange& range : ranges) {

@@ -13,6 +13,7 @@
 
 #include "support/fuzz.h"
 #include "support/fuzz_reader.h"
+#include "support/placed_shapes.h"
 #include "support/shapes.h"
 
 namespace {
@@ -100,6 +101,8 @@ std::vector<Bytes> lodestone::test::fuzz_seeds() {
       const auto stream = result ? encode_compact(result->mesh, compact) : fail(ErrorCode::Malformed, "");
       if (!stream) continue;
       seeds.push_back(bytes_of(stream->bytes));
+      const auto levels = scattered_levels(result->mesh, 2, 0.02, dense_rounds * 0.01, 1);
+      if (const auto placed = encode_compact(result->mesh, compact, levels)) seeds.push_back(bytes_of(placed->bytes));
     }
   return seeds;
 }

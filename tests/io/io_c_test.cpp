@@ -132,8 +132,8 @@ TEST_CASE("the C interface gives what the C++ one does") {
       REQUIRE(lodestone_cursor_take_new_wedges(cursor, &wedges) == LODESTONE_OK);
       CHECK(EntryRange{wedges.begin, wedges.end} == expected.take_new_wedges());
       std::vector<float> out(3 * level.wedge_count), same(3 * level.wedge_count);
-      REQUIRE(lodestone_stream_copy_positions(stream, 0, level.wedge_count, out.data(), out.size()) == LODESTONE_OK);
-      copy_positions(mesh, {0, level.wedge_count}, same.data());
+      REQUIRE(lodestone_cursor_copy_positions(cursor, 0, level.wedge_count, out.data(), out.size()) == LODESTONE_OK);
+      copy_positions(mesh, expected, {0, level.wedge_count}, same.data());
       CHECK(out == same);
       REQUIRE(lodestone_cursor_copy_normals(cursor, out.data(), out.size()) == LODESTONE_OK);
       copy_normals(mesh, expected, same.data());
@@ -269,10 +269,10 @@ TEST_CASE("what is null, out of range or too small is refused, and nothing writt
   refused(lodestone_stream_get_group(stream, 2, &group));
   auto attribute = sized<lodestone_attribute>();
   refused(lodestone_stream_get_attribute(stream, 1, &attribute));
-  refused(lodestone_stream_copy_positions(stream, 0, wedges + 1, out.data(), 2 * out.size()));
-  refused(lodestone_stream_copy_positions(stream, 2, 1, out.data(), out.size()));
-  refused(lodestone_stream_copy_positions(stream, 0, wedges, nullptr, out.size()));
-  refused(lodestone_stream_copy_positions(stream, 0, wedges, out.data(), out.size() - 1), LODESTONE_NO_ROOM);
+  refused(lodestone_cursor_copy_positions(cursor, 0, wedges + 1, out.data(), 2 * out.size()));
+  refused(lodestone_cursor_copy_positions(cursor, 2, 1, out.data(), out.size()));
+  refused(lodestone_cursor_copy_positions(cursor, 0, wedges, nullptr, out.size()));
+  refused(lodestone_cursor_copy_positions(cursor, 0, wedges, out.data(), out.size() - 1), LODESTONE_NO_ROOM);
   refused(lodestone_stream_copy_attribute(stream, 1, 0, 1, out.data(), out.size()));
   refused(lodestone_stream_copy_attribute(stream, 0, 0, wedges, out.data(), 4 * wedges - 1), LODESTONE_NO_ROOM);
   refused(lodestone_stream_copy_attribute(stream, 0, 0, 1, nullptr, 4));

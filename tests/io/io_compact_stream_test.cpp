@@ -365,7 +365,7 @@ TEST_CASE("the sizes of a compact stream's parts add up") {
   const CompactStream stream = encoded(progressive(icosphere(3, 0.05, 1)));
   const CompactSizes& s = stream.sizes;
   for (const double part : {s.header, s.base, s.places, s.wedges, s.loose, s.positions, s.errors}) CHECK(part > 0);
-  const double sum = s.header + s.base + s.places + s.wedges + s.loose + s.positions + s.errors;
+  const double sum = s.header + s.base + s.places + s.wedges + s.loose + s.positions + s.moves + s.errors;
   CHECK(std::abs(sum - 8.0 * static_cast<double>(stream.bytes.size())) < 1e-6);
 }
 
@@ -582,6 +582,8 @@ std::vector<std::byte> cloud_of(Index rounds, Index wedges_each) {
   BaseMesh base;
   base.positions.resize(1);
   base.wedge_counts.push_back(1);
+  int step = 0;
+  REQUIRE(levels.code_step(coder, step));
   REQUIRE(levels.code_base(coder, base));
   REQUIRE(errors.code(coder, deviation, curvature));
   const PatchPlan no_patches;
@@ -596,6 +598,8 @@ std::vector<std::byte> cloud_of(Index rounds, Index wedges_each) {
     LooseVertex vertex;
     vertex.extra = wedges_each;
     if (!levels.code_loose_vertex(coder, vertex)) return {};
+    bool ends = false;
+    REQUIRE(levels.code_stage_end(coder, ends, {}));
     REQUIRE(errors.code(coder, deviation, curvature));
   }
   CompactHeader header;

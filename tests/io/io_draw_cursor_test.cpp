@@ -10,6 +10,7 @@
 #include "support/counted_memory.h"
 #include "support/data.h"
 #include "support/mesh_properties.h"
+#include "support/placed_shapes.h"
 #include "support/progressive_shapes.h"
 #include "support/random.h"
 
@@ -26,14 +27,21 @@ class Engine {
     const EntryRange wedges = cursor_->take_new_wedges();
     REQUIRE(3 * wedges.begin == positions_.size());
     positions_.resize(3 * wedges.end);
-    copy_positions(*mesh_, wedges, positions_.data() + 3 * wedges.begin);
+    copy_positions(*mesh_, *cursor_, wedges, positions_.data() + 3 * wedges.begin);
+    cursor_->take_moved_wedges(gap, ranges_);
+    for (const EntryRange& range : ranges_) {
+      REQUIRE(range.begin < range.end);
+      REQUIRE(3 * range.end <= positions_.size());
+      copy_positions(*mesh_, *cursor_, range, positions_.data() + 3 * range.begin);
+    }
     for (std::size_t group = 0; group < corners_.size(); ++group) upload_group(group, gap);
   }
 
   void check() const {
     REQUIRE(positions_.size() >= 3 * cursor_->wedge_count());
-    for (std::size_t w = 0; 3 * w < positions_.size(); ++w) {
-      const Vec3f& there = mesh_->positions[mesh_->wedge_vertex[w]];
+    const std::vector<Vec3f> positions = positions_at(*mesh_, cursor_->position());
+    for (std::size_t w = 0; w < cursor_->wedge_count(); ++w) {
+      const Vec3f& there = positions[mesh_->wedge_vertex[w]];
       REQUIRE(std::memcmp(&positions_[3 * w], &there, sizeof there) == 0);
     }
     for (std::size_t group = 0; group < corners_.size(); ++group) {
@@ -82,7 +90,12 @@ ProgressiveMesh dense(const TriangleSoup& soup) {
 
 TEST_CASE("who writes the ranges named and no others has the buffers of the level, whatever the moves") {
   Random random(3);
-  for (const ProgressiveMesh& mesh : progressive_shapes()) {
+  std::vector<ProgressiveMesh> meshes = progressive_shapes();
+  for (ProgressiveMesh moved : progressive_shapes()) {
+    add_moves(moved, 0.1, random.next());
+    meshes.push_back(std::move(moved));
+  }
+  for (const ProgressiveMesh& mesh : meshes) {
     DrawCursor cursor(mesh);
     Engine engine(mesh, cursor);
     for (int i = 0; i < 30; ++i) {
@@ -99,7 +112,8 @@ TEST_CASE("who writes the ranges named and no others has the buffers of the leve
 }
 
 TEST_CASE("the buffers follow a stream that arrives") {
-  const auto stream = encode_compact(dense(terrain(60, 3)));
+  const ProgressiveMesh mesh = dense(terrain(60, 3));
+  const auto stream = encode_compact(mesh, {}, scattered_levels(mesh, 2, 0.01, 0.01, 1));
   REQUIRE(stream);
   StreamReader reader;
   Random random(4);
@@ -125,7 +139,8 @@ TEST_CASE("the buffers follow a stream that arrives") {
 }
 
 TEST_CASE("a small move uploads little, none nothing, and moves allocate nothing") {
-  const ProgressiveMesh mesh = dense(icosphere(kReduced ? 4 : 5, 0.02, 1));
+  ProgressiveMesh mesh = dense(icosphere(kReduced ? 4 : 5, 0.02, 1));
+  add_moves(mesh, 0.01, 2);
   const auto last = static_cast<Index>(mesh.record_count());
   DrawCursor cursor(mesh);
   Engine engine(mesh, cursor);

@@ -13,6 +13,7 @@
 
 #include "support/data.h"
 #include "support/mesh_properties.h"
+#include "support/placed_shapes.h"
 #include "support/random.h"
 
 namespace lodestone::test {
@@ -426,6 +427,22 @@ TEST_CASE("what is wrong is named, with the record and the number at fault") {
   CHECK_THAT(message([](ProgressiveMesh& m) { m.wedge_vertex.back() = 0; }), contains(record + " names vertex 0"));
   CHECK_THAT(message([](ProgressiveMesh& m) { m.groups[0].base_corners[0] = 999; }),
              contains("group 0 of the base mesh names wedge 999 of "));
+
+  // Moves.
+  const auto moved = [&](auto&& change) {
+    return message([&](ProgressiveMesh& m) {
+      add_moves(m, 0.1, 1);
+      change(m);
+    });
+  };
+  CHECK(moved([](ProgressiveMesh&) {}) == "valid");
+  CHECK(moved([](ProgressiveMesh& m) { m.move_begin.clear(); }).starts_with("moves has "));
+  CHECK(moved([](ProgressiveMesh& m) { m.move_begin.pop_back(); }).starts_with("move_begin has "));
+  CHECK(moved([](ProgressiveMesh& m) { m.move_begin.back() += 1; }).starts_with("move_begin does not rise from 0 to "));
+  CHECK_THAT(moved([](ProgressiveMesh& m) { m.moves.back().vertex = 100000; }),
+             contains(" moves vertex 100000 before it exists"));
+  CHECK_THAT(moved([](ProgressiveMesh& m) { m.moves.back().from.x += 1; }), contains("from where it does not lie"));
+  CHECK_THAT(moved([](ProgressiveMesh& m) { m.moves.back().to.z = std::nanf(""); }), contains("to nowhere"));
 
   // Records.
   CHECK_THAT(message([](ProgressiveMesh& m) { m.sectors.back().polygon_size += 1; }),

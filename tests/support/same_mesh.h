@@ -42,7 +42,8 @@ inline bool same(const ProgressiveMesh& a, const ProgressiveMesh& b) {
          same_groups(a, b) && a.base_vertex_count == b.base_vertex_count && a.base_wedge_count == b.base_wedge_count &&
          a.record_wedge_begin == b.record_wedge_begin && a.sector_begin == b.sector_begin && same_sectors(a, b) &&
          a.polygon_begin == b.polygon_begin && a.polygons == b.polygons && a.slots == b.slots &&
-         a.triangles == b.triangles && a.round_begin == b.round_begin && same_bytes(a.deviation, b.deviation) &&
+         a.triangles == b.triangles && a.move_begin == b.move_begin && same_bytes(a.moves, b.moves) &&
+         a.round_begin == b.round_begin && same_bytes(a.deviation, b.deviation) &&
          same_bytes(a.curvature_error, b.curvature_error);
 }
 

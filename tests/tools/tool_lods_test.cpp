@@ -104,7 +104,7 @@ TEST_CASE("inspect --stream tells what parts and rounds of a stream take, and th
     const auto& one = json["streams"][0];
     CHECK(one["version"] == "3.0");
     const std::size_t count = one["parts"].size();
-    CHECK(count == (file == stream ? 7 : 8));
+    CHECK(count == (file == stream ? 8 : 9));
     std::vector<double> parts(count);
     for (const auto& round : one["rounds"]) {
       REQUIRE(round["bits"].size() == count);
@@ -203,7 +203,6 @@ TEST_CASE("options that say nothing for a stream are refused by name") {
   refused({"--profile", "files"}, 1, "--profile");
   refused({"--no-stream"}, 1, "--no-stream");
   refused({"--faces", "100,10"}, 1, "--report or --html");
-  refused({"--placement", "subset"}, 1, "--placement");
   refused({"--grid-step", "0.1"}, 1, "--grid-step");
   refused({"--compress", "none"}, 1, "--compress");
   refused({"--qp", "20"}, 1, "--qp: a stream's positions have 8 to 16 bits, not 20");

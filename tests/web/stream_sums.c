@@ -40,7 +40,7 @@ static uint32_t sum_of_level(lodestone_stream* stream, lodestone_cursor* cursor,
   const size_t floats = 3 * (size_t)level.wedge_count;
   float* const positions = malloc(floats * sizeof *positions + 1);
   if (positions != NULL &&
-      lodestone_stream_copy_positions(stream, 0, level.wedge_count, positions, floats) == LODESTONE_OK)
+      lodestone_cursor_copy_positions(cursor, 0, level.wedge_count, positions, floats) == LODESTONE_OK)
     sum = add(sum, positions, floats * sizeof *positions);
   free(positions);
   for (uint32_t i = 0; i < state.attribute_count; ++i) sum = add_attribute(sum, stream, i, level.wedge_count);

@@ -117,30 +117,44 @@ std::vector<std::optional<CompactOptions>> stream_options(const Scene& scene, co
   return options;
 }
 
-/// What a compact stream does not hold, one that keeps its floats may, if the layout has such.
-Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const std::optional<CompactOptions>& compact,
-                                      FileLayout layout, const Progress& progress) {
-  if (compact) {
-    CompactOptions options = *compact;
-    options.progress = progress;
-    Result<CompactStream> stream = encode_compact(mesh, options);
-    if (stream) return std::move(stream->bytes);
-    if (is_by_compact_streams(layout) || stream.error().code == ErrorCode::Cancelled)
-      return tl::unexpected(stream.error());
-  }
+/// Places levels of compact streams closer to the meshes.
+struct Placer {
+  MeasuredScene& measured;
+  SceneFitter& fitter;
+};
+constexpr double kPlacingShare = 0.7;  // of the work on a compact stream; the rest is encoding
+
+/// `placer`: null where the vertices of levels stay where they are.
+Result<std::vector<std::byte>> encode(std::size_t i, const ProgressiveMesh& mesh, CompactOptions options,
+                                      const Placer* placer, const Progress& progress) {
+  std::vector<PlacedLevel> placed;
+  if (placer != nullptr) placed = placer->fitter.placed(i, placer->measured.original(i), progress.part(kPlacingShare));
+  if (!progress.reach(placer != nullptr ? kPlacingShare : 0)) return cancelled();
+  options.progress = progress.part(placer != nullptr ? 1 - kPlacingShare : 1);
+  LODESTONE_TRY(CompactStream stream, encode_compact(mesh, options, placed));
+  return std::move(stream.bytes);
+}
+
+Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const Progress& progress) {
   StreamOptions options;
   options.progress = progress;
   return encode_stream(mesh, options);
 }
 
 /// A mesh that is beyond the stream's limits goes without one; its levels do not need it, unless all but one are in it.
-Result<void> encode_streams(const Scene& scene, const BuildOptions& build, std::vector<LeveledMesh>& levels,
-                            BuildResult& result, Notes& notes, const Progress& progress) {
+/// What a compact stream does not hold, one that keeps its floats may, if the layout has such.
+Result<void> encode_streams(const Scene& scene, const BuildOptions& build, const Placer* placer,
+                            std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes,
+                            const Progress& progress) {
   const std::vector<std::optional<CompactOptions>> options = stream_options(scene, build);
   std::vector<Result<std::vector<std::byte>>> streams(levels.size());
   for_each_in_parallel(levels.size(), [&](std::size_t i) {
     const Progress part = progress.part(1 / static_cast<double>(levels.size()));
-    if (!part.is_cancelled()) streams[i] = encode(result.simplified[i].mesh, options[i], build.layout, part);
+    if (part.is_cancelled()) return;
+    const ProgressiveMesh& mesh = result.simplified[i].mesh;
+    if (options[i]) streams[i] = encode(i, mesh, *options[i], placer, part);
+    const bool is_held = options[i] && (streams[i] || streams[i].error().code == ErrorCode::Cancelled);
+    if (!is_held && !is_by_compact_streams(build.layout)) streams[i] = encode(mesh, part);
   });
   if (!progress.reach(1)) return cancelled();
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -349,8 +363,13 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
 
   const Progress writing = stage_progress(observer, BuildStage::Writing);
   if (options.layout == FileLayout::StreamAlone) name_materials(options.material_numbers, result.simplified[0].mesh);
-  if (writes_streams(options))
-    LODESTONE_CHECK(encode_streams(scene, options, levels, result, notes, writing.part(kStreamsShare)));
+  if (writes_streams(options)) {
+    // With all levels beside it, a stream is not what is drawn from.
+    const bool places = is_by_compact_streams(options.layout) && given.placement == Placement::Optimised;
+    const Placer placer = {measured, fitter};
+    LODESTONE_CHECK(
+        encode_streams(scene, options, places ? &placer : nullptr, levels, result, notes, writing.part(kStreamsShare)));
+  }
   writing.reach(kStreamsShare);
   result.timings_ms.write = stopwatch.lap_ms();
   if (options.layout == FileLayout::StreamAlone) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <lodestone/io/scene.h>
+#include <lodestone/lod/place_levels.h>
 #include <lodestone/lod/placement.h>
 #include <lodestone/lod/simplify.h>
 #include <lodestone/pipeline/build_options.h>
@@ -24,7 +25,14 @@ class SceneFitter {
   /// Returns a level of a mesh fitted to it, all but the vertices that the options kept.
   Mesh fitted(std::size_t mesh, const Mesh& level, const Progress& progress);
 
+  /// Returns levels of a mesh's stream placed closer to it; none where its vertices stay. `whole`: of the mesh.
+  std::vector<PlacedLevel> placed(std::size_t mesh, const MeasuredSurface& whole, const Progress& progress);
+
  private:
+  bool may_move(std::size_t mesh) const;
+  const LevelFitter& fitter(std::size_t mesh, const Progress& progress);
+  PlacementOptions options_of(std::size_t mesh, const Progress& progress) const;
+
   const Scene& scene_;
   const std::vector<SimplifyResult>& simplified_;
   const BuildOptions& options_;

@@ -123,11 +123,7 @@ typedef struct lodestone_attribute {
 LODESTONE_API int32_t lodestone_stream_get_attribute(lodestone_stream* stream, uint32_t index,
                                                      lodestone_attribute* attribute);
 
-/* Copies the positions of wedges [begin, end) to `out`, three floats each. Vertex buffers only grow: what is in them
- * stays. `room`: floats that `out` has place for. */
-LODESTONE_API int32_t lodestone_stream_copy_positions(lodestone_stream* stream, uint32_t begin, uint32_t end,
-                                                      float* out, size_t room);
-/* Copies an attribute of wedges [begin, end), element_bytes each. `room`: bytes that `out` has place for. */
+/* Copies an attribute of wedges [begin, end), element_bytes each. It never changes: what is in a vertex buffer stays. `room`: bytes that `out` has place for. */
 LODESTONE_API int32_t lodestone_stream_copy_attribute(lodestone_stream* stream, uint32_t index, uint32_t begin,
                                                       uint32_t end, void* out, size_t room);
 
@@ -179,6 +175,15 @@ LODESTONE_API int32_t lodestone_cursor_take_changes(lodestone_cursor* cursor, ui
                                                     lodestone_range* ranges, size_t room, size_t* count);
 /* Gives the wedges that are to be uploaded and have not been given before. */
 LODESTONE_API int32_t lodestone_cursor_take_new_wedges(lodestone_cursor* cursor, lodestone_range* wedges);
+/* Gives the ranges of wedges whose positions may have changed since they were taken last, as take_changes does: levels
+ * on the way lie closer to the whole mesh than its own vertices would. */
+LODESTONE_API int32_t lodestone_cursor_take_moved_wedges(lodestone_cursor* cursor, size_t gap, lodestone_range* ranges,
+                                                         size_t room, size_t* count);
+
+/* Copies the positions of wedges [begin, end) of the stream to `out`, three floats each, as the cursor's level has them.
+ * `room`: floats that `out` has place for. */
+LODESTONE_API int32_t lodestone_cursor_copy_positions(lodestone_cursor* cursor, uint32_t begin, uint32_t end,
+                                                      float* out, size_t room);
 
 /* Writes smooth normals of the level for its wedges, three floats each: for streams without the attribute NORMAL.
  * They change wherever faces do. `room`: floats that `out` has place for. */

@@ -83,7 +83,7 @@ class GeometryBuffers {
   #buffers; // of positions, then of the stream's attributes
   #indices; // by group
   #wedges = 0;
-  #moved = false; // there are vertices that targets do not have
+  #moved = false; // there are vertices that targets do not have, or have elsewhere
 
   constructor(stream, engine, parts, json, primitives) {
     const whole = stream.chunks.at(-1);
@@ -93,12 +93,14 @@ class GeometryBuffers {
     this.#indices = stream.groups.map(() => new GrowingArray(1, 3 * whole.faceCount));
   }
 
-  write({ level, wedges, groups }) {
+  write({ wedges, moved, groups }) {
     if (wedges.end > wedges.begin) {
       [wedges.positions, ...wedges.attributes].forEach((values, i) => this.#buffers[i].write(wedges.begin, values));
       this.#wedges = wedges.end;
       this.#moved = true;
     }
+    for (const { begin, positions } of moved) this.#buffers[0].write(begin, positions);
+    this.#moved ||= moved.length > 0;
     groups.forEach(({ ranges }, i) => {
       for (const { begin, corners } of ranges) this.#indices[i].write(begin, corners);
     });

@@ -36,8 +36,10 @@ export type AttributeArray = Int8Array | Uint8Array | Int16Array | Uint16Array |
 /** What changed between a level and the one before it. */
 export interface Update {
   level: Level;
-  /** Vertices that are new: [begin, end) of the vertex buffers. Those before stay as they are. */
+  /** Vertices that are new: [begin, end) of the vertex buffers. */
   wedges: { begin: number; end: number; positions: Float32Array; attributes: AttributeArray[] };
+  /** Vertices before those that lie elsewhere now, from `begin` on; their attributes stay. */
+  moved: { begin: number; positions: Float32Array }[];
   /** By group: how many entries of its index buffer are drawn, and those that are others now. */
   groups: { count: number; ranges: { begin: number; corners: Uint32Array }[] }[];
   /** Where they were asked for: of all wedges of the level. */

@@ -172,7 +172,11 @@ export class Session {
     const update = {
       type: 'update',
       level: cursor.level,
-      wedges: { begin, end, positions: stream.positions(begin, end), attributes: [] },
+      wedges: { begin, end, positions: cursor.positions(begin, end), attributes: [] },
+      moved: cursor
+        .movedWedges()
+        .filter((range) => range.begin < begin)
+        .map((range) => ({ begin: range.begin, positions: cursor.positions(range.begin, Math.min(range.end, begin)) })),
       groups: [],
       normals: this.#options.normals ? cursor.normals() : null,
       low: state.low,
@@ -189,7 +193,7 @@ export class Session {
         ranges: ranges.map((range) => ({ begin: range.begin, corners: corners.slice(range.begin, range.end) })),
       });
     }
-    const arrays = [update.wedges.positions, ...update.wedges.attributes, ...update.groups.flatMap(({ ranges }) => ranges.map(({ corners }) => corners))];
+    const arrays = [update.wedges.positions, ...update.wedges.attributes, ...update.moved.map(({ positions }) => positions), ...update.groups.flatMap(({ ranges }) => ranges.map(({ corners }) => corners))];
     if (update.normals) arrays.push(update.normals);
     return { update, transferred: arrays.map(({ buffer }) => buffer) };
   }

@@ -72,7 +72,7 @@ export class StreamBuffers {
   }
 
   /** Takes an update; returns whether geometries need their buffers anew: all of them, since they share those of vertices. */
-  write({ wedges, groups, normals }) {
+  write({ wedges, moved, groups, normals }) {
     let grown = false;
     if (wedges.end > wedges.begin) {
       this.#wedges = wedges.end;
@@ -81,6 +81,7 @@ export class StreamBuffers {
       });
       grown ||= this.hasTargets;
     }
+    for (const { begin, positions } of moved) this.#attributes[0].growing.write(begin, positions);
     if (normals) grown = this.#writeNormals(normals) || grown;
     groups.forEach(({ ranges }, i) => {
       for (const { begin, corners } of ranges) grown = this.#indices[i].write(begin, corners) || grown;

@@ -41,8 +41,6 @@ export class Stream {
   chunk(index: number): Chunk;
   group(index: number): { material: number; faceCount: number };
   attribute(index: number): AttributeFormat;
-  /** Copies the positions of wedges, three floats each. */
-  positions(begin: number, end: number): Float32Array;
   attributeValues(index: number, begin: number, end: number): AttributeArray;
   /** Makes a cursor at the base mesh, once the first chunk is there. */
   createCursor(options?: { slack?: number }): Cursor;
@@ -59,6 +57,10 @@ export class Cursor {
   corners(group: number): Uint32Array;
   /** Returns the ranges of a group's index buffer that may have changed since they were asked for last. */
   changes(group: number, gap?: number): { begin: number; end: number }[];
+  /** Returns the ranges of wedges whose positions may have changed since they were asked for last. */
+  movedWedges(gap?: number): { begin: number; end: number }[];
+  /** Copies the positions that wedges of the stream have at this level, three floats each. */
+  positions(begin: number, end: number): Float32Array;
   /** Returns the wedges that are to be uploaded and have not been returned before. */
   newWedges(): { begin: number; end: number };
   /** Returns smooth normals of the level, three floats for each wedge. */

@@ -170,12 +170,6 @@ export class Stream {
     return { name: this.runtime.text(name), componentType, componentCount, normalized: normalized !== 0 };
   }
 
-  /** Copies the positions of wedges, three floats each. */
-  positions(begin, end) {
-    const count = 3 * (end - begin);
-    return this.runtime.take(Float32Array, count, (at) => this.run('stream_positions', this.handle, begin, end, at, count));
-  }
-
   /** Copies an attribute of wedges, in an array of its own type. */
   attributeValues(index, begin, end) {
     const { componentType, componentCount } = this.attribute(index);
@@ -229,10 +223,25 @@ export class Cursor {
 
   /** Returns the ranges of a group's index buffer that may have changed since they were asked for last. */
   changes(group, gap = 1024) {
-    this.stream.run('cursor_changes', this.handle, group, gap);
+    return this.#ranges('cursor_changes', group, gap);
+  }
+
+  /** Returns the ranges of wedges whose positions may have changed since they were asked for last. */
+  movedWedges(gap = 256) {
+    return this.#ranges('cursor_moved_wedges', gap);
+  }
+
+  #ranges(name, ...values) {
+    this.stream.run(name, this.handle, ...values);
     const [count] = this.runtime.results(1);
     const ends = this.runtime.results(1 + 2 * count);
     return Array.from({ length: count }, (_, i) => ({ begin: ends[1 + 2 * i], end: ends[2 + 2 * i] }));
+  }
+
+  /** Copies the positions that wedges of the stream have at this level, three floats each. */
+  positions(begin, end) {
+    const count = 3 * (end - begin);
+    return this.runtime.take(Float32Array, count, (at) => this.stream.run('cursor_positions', this.handle, begin, end, at, count));
   }
 
   /** Returns the wedges that are to be uploaded and have not been returned before. */

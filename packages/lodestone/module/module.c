@@ -66,10 +66,6 @@ EXPORT("stream_attribute") int32_t web_stream_attribute(lodestone_stream* stream
   GIVE((double)(size_t)a.name, a.component_type, a.component_count, a.normalized, a.element_bytes);
   return code;
 }
-EXPORT("stream_positions")
-int32_t web_stream_positions(lodestone_stream* stream, uint32_t begin, uint32_t end, float* out, size_t room) {
-  return lodestone_stream_copy_positions(stream, begin, end, out, room);
-}
 EXPORT("stream_attribute_values")
 int32_t web_stream_attribute_values(lodestone_stream* stream, uint32_t index, uint32_t begin, uint32_t end, void* out,
                                     size_t room) {
@@ -106,16 +102,30 @@ EXPORT("cursor_corners") int32_t web_cursor_corners(lodestone_cursor* cursor, ui
   return code;
 }
 /* Gives their number, then the beginning and end of each. */
-EXPORT("cursor_changes") int32_t web_cursor_changes(lodestone_cursor* cursor, uint32_t group, size_t gap) {
-  lodestone_range ranges[kMostRanges];
-  size_t count = 0;
-  const int32_t code = lodestone_cursor_take_changes(cursor, group, gap, ranges, kMostRanges, &count);
+static void give_ranges(const lodestone_range* ranges, size_t count) {
   results[0] = (double)count;
   for (size_t i = 0; i < count; ++i) {
     results[1 + 2 * i] = (double)ranges[i].begin;
     results[2 + 2 * i] = (double)ranges[i].end;
   }
+}
+EXPORT("cursor_changes") int32_t web_cursor_changes(lodestone_cursor* cursor, uint32_t group, size_t gap) {
+  lodestone_range ranges[kMostRanges];
+  size_t count = 0;
+  const int32_t code = lodestone_cursor_take_changes(cursor, group, gap, ranges, kMostRanges, &count);
+  give_ranges(ranges, count);
   return code;
+}
+EXPORT("cursor_moved_wedges") int32_t web_cursor_moved_wedges(lodestone_cursor* cursor, size_t gap) {
+  lodestone_range ranges[kMostRanges];
+  size_t count = 0;
+  const int32_t code = lodestone_cursor_take_moved_wedges(cursor, gap, ranges, kMostRanges, &count);
+  give_ranges(ranges, count);
+  return code;
+}
+EXPORT("cursor_positions")
+int32_t web_cursor_positions(lodestone_cursor* cursor, uint32_t begin, uint32_t end, float* out, size_t room) {
+  return lodestone_cursor_copy_positions(cursor, begin, end, out, room);
 }
 EXPORT("cursor_new_wedges") int32_t web_cursor_new_wedges(lodestone_cursor* cursor) {
   lodestone_range wedges = {0, 0};

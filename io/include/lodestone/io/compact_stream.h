@@ -10,6 +10,7 @@
 #include <lodestone/core/progress.h>
 #include <lodestone/core/result.h>
 #include <lodestone/core/vec.h>
+#include <lodestone/lod/placed_level.h>
 #include <lodestone/lod/progressive_mesh.h>
 
 namespace lodestone {
@@ -45,6 +46,7 @@ struct CompactSizes {
   double base = 0;       ///< the base mesh
   double places = 0;     ///< where vertices appear, and the triangulations there
   double positions = 0;  ///< where they lie
+  double moves = 0;      ///< where they go
   double wedges = 0;     ///< which wedges belong where
   double loose = 0;      ///< what is told face by face, with its positions
   double errors = 0;
@@ -88,7 +90,13 @@ struct CompactChunk {
 /// Deterministic. Errors: InvalidArgument for options, and for positions outside the grid by more than half a step;
 /// LimitExceeded where the mesh has more of anything than a stream can hold; Unsupported where records do not fit the
 /// faces that they replace; Cancelled.
-Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options = {});
+///
+/// `levels`, coarse to fine, say where the vertices of some levels lie so that those are closer to the full mesh: records
+/// after them move them on. Positions up to such a level are rounded the more coarsely the less precise they need be.
+/// The deviation of what lies between two such levels is that of the mesh's own, and how far its vertices are moved.
+/// Errors besides: InvalidArgument where a level is none of the mesh, or not finer than the one before.
+Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options = {},
+                                     std::span<const PlacedLevel> levels = {});
 
 /// Reads where the chunks lie and what they lead to; they need not be there yet. Errors: Malformed, Unsupported
 /// (another version), with offsets.

@@ -19,9 +19,9 @@ struct EntryRange {
   friend bool operator==(const EntryRange&, const EntryRange&) = default;
 };
 
-/// A cursor that says what an engine has to upload after each move: which entries of the index buffers changed, and
-/// which wedges are new. The vertices of a mesh never change: their buffers only grow, and a coarser level uses the
-/// first of them.
+/// A cursor that says what an engine has to upload after each move: which entries of the index buffers changed, which
+/// wedges are new, and which lie elsewhere. Vertex buffers only grow, and a coarser level uses the first of what is in
+/// them.
 ///
 /// Allocates when it is made, and after that only where the mesh has grown.
 class DrawCursor {
@@ -47,38 +47,53 @@ class DrawCursor {
   void take_changes(std::size_t group, std::size_t gap, std::vector<EntryRange>& ranges);
   /// Gives the wedges that levels since have had and none before: their positions and attributes are to be uploaded.
   EntryRange take_new_wedges();
+  /// Gives the ranges of wedges whose positions may have changed since they were taken last, those that were new in
+  /// between besides; as `take_changes`.
+  void take_moved_wedges(std::size_t gap, std::vector<EntryRange>& ranges);
+
+  /// Where a vertex of the mesh lies; one that the level does not have, where it will when that comes back.
+  const Vec3f& position(Index vertex) const {
+    return vertex < positions_.size() ? positions_[vertex] : mesh_->positions[vertex];
+  }
 
  private:
-  /// Faces of a group that changed, in blocks: a bit each.
+  /// Items that changed, of some entries each, in blocks: a bit for each.
   class Changes {
    public:
-    static constexpr std::size_t kBlockFaces = 64;
+    static constexpr std::size_t kBlock = 64;
 
-    void make_room(std::size_t face_count);
-    void mark(Index face) {
-      const std::size_t block = face / kBlockFaces;
+    explicit Changes(std::size_t entries_each) : entries_each_(entries_each) {}
+    void make_room(std::size_t item_count);
+    void mark(std::size_t item) {
+      const std::size_t block = item / kBlock;
       bits_[block / 64] |= std::uint64_t{1} << block % 64;
     }
-    void mark(std::size_t first_face, std::size_t end_face);
-    void take(std::size_t face_count, std::size_t gap, std::vector<EntryRange>& ranges);
+    void mark(std::size_t first, std::size_t end);
+    void take(std::size_t item_count, std::size_t gap, std::vector<EntryRange>& ranges);
 
    private:
+    std::size_t entries_each_;
     std::vector<std::uint64_t> bits_;
   };
 
   void make_room();
   void mark_records(Index first, Index end);
+  void move_vertices(Index from, Index to);
+  void place(Index vertex, const Vec3f& position);
 
   const ProgressiveMesh* mesh_;
   Cursor cursor_;
-  std::vector<Changes> changed_;          // by group
+  std::vector<Changes> changed_;          // faces, by group
+  Changes moved_;                         // wedges
+  std::vector<Vec3f> positions_;          // of the vertices that were there at the last move, where records move any
   std::vector<std::size_t> face_counts_;  // by group, where a move began
   std::size_t wedges_reached_;
   std::size_t wedges_taken_ = 0;
 };
 
-/// Copies the positions of wedges to `out`, three floats each. Pre: they lie in the mesh, and there is room for them.
-void copy_positions(const ProgressiveMesh& mesh, EntryRange wedges, float* out);
+/// Copies the positions that wedges have at a cursor to `out`, three floats each. Pre: they lie in the mesh, and there
+/// is room for them.
+void copy_positions(const ProgressiveMesh& mesh, const DrawCursor& cursor, EntryRange wedges, float* out);
 
 /// Writes smooth normals for the wedges of the cursor's level, three floats each: the mean of the faces around the
 /// vertex by their areas, of length 1 or, where there are none, 0. Pre: there is room for them. Cost: the level's faces

@@ -44,6 +44,14 @@ class LevelFitter {
   /// Returns what optimise_placement returns for the level.
   Mesh fit(const Mesh& level, const PlacementOptions& options = {}) const;
 
+  /// Where the vertices of a level go.
+  struct Places {
+    std::vector<Vec3f> positions;  ///< by vertex of the level
+    double rms = 0;                ///< distance of the original's points from the level then, mesh units
+  };
+  /// Moves the vertices of a level only, most of all along their normals; its faces and attributes stay as they are.
+  Places find_places(const Mesh& level, const PlacementOptions& options = {}) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

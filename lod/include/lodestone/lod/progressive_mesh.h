@@ -36,6 +36,12 @@ struct FaceGroup {
   std::vector<Index> base_corners;  ///< 3 wedges for each face of the base mesh, in the canonical rotation
 };
 
+/// A vertex that a record moves, besides the one that it creates.
+struct VertexMove {
+  Index vertex = 0;  ///< of the level before the record
+  Vec3f from, to;
+};
+
 /// A base mesh and the records that refine it, coarse to fine.
 ///
 /// *Numbering.* Vertices, wedges and faces stand in the order of their creation: record k creates vertex
@@ -51,6 +57,10 @@ struct FaceGroup {
 /// polygon_size wedges from polygon_begin[s] on; in `slots`, polygon_size − 2 face slots of its group from
 /// slot_begin(s) on; and in `triangles`, three bytes for each of those: the local polygon indices a < b < c of the
 /// coarse face. slot_begin(s) = polygon_begin[s] − 2·s, since each sector has two slots fewer than polygon corners.
+///
+/// *Moves.* Levels of records that only add vertices have the finest mesh's vertices. Where levels are to lie closer to
+/// it, records move vertices on the way: `positions` then says where each lies when it is created, and moves
+/// move_begin[k] … move_begin[k+1] of record k, where it goes. Each move begins where the vertex lies.
 ///
 /// *Errors.* deviation[p] bounds the two-sided (Hausdorff) distance between level p and the full mesh, in mesh units;
 /// curvature_error[p] is the largest curvature error ε of the removals that lead from the full mesh to level p, in the
@@ -72,6 +82,9 @@ struct ProgressiveMesh {
   std::vector<Index> slots;                  ///< faces of the sector's group
   std::vector<std::uint8_t> triangles;       ///< 3 local polygon indices for each slot
 
+  std::vector<Index> move_begin;  ///< record_count() + 1, first 0; or empty where no record moves anything
+  std::vector<VertexMove> moves;
+
   std::vector<Index> round_begin;      ///< round r holds records [round_begin[r], round_begin[r+1]), coarse to fine
   std::vector<float> deviation;        ///< record_count() + 1, mesh units
   std::vector<float> curvature_error;  ///< record_count() + 1, radians or mesh units, by metric
@@ -79,7 +92,15 @@ struct ProgressiveMesh {
   std::size_t record_count() const { return sector_begin.empty() ? 0 : sector_begin.size() - 1; }
   std::size_t vertex_count() const { return positions.size(); }
   std::uint64_t slot_begin(std::size_t sector) const { return polygon_begin[sector] - 2 * sector; }
+  std::span<const VertexMove> moves_of(std::size_t record) const {
+    if (move_begin.empty()) return {};
+    return std::span(moves).subspan(move_begin[record], move_begin[record + 1] - move_begin[record]);
+  }
 };
+
+/// Returns where the vertices of a level lie, base_vertex_count + position of them. Cost: linear in these and the
+/// moves.
+std::vector<Vec3f> positions_at(const ProgressiveMesh& mesh, Index position);
 
 /// Returns the faces of every position, record_count() + 1 entries, ascending.
 std::vector<Index> face_counts(const ProgressiveMesh& mesh);

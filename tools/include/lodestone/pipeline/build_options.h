@@ -45,7 +45,7 @@ struct BuildOptions {
   /// the reach of morph targets.
   SimplifyOptions simplify;
   Importance importance;                       ///< of materials and nodes, by name
-  Placement placement = Placement::Optimised;  ///< of each level but the first; a stream alone has a subset
+  Placement placement = Placement::Optimised;  ///< of each level but the first, and of those of a compact stream
   FileLayout layout = FileLayout::OneFile;
   bool stream = true;  ///< write each mesh's removal stream, with all levels in one file
   /// With all levels in one file: keep the stream's floats, bit for bit, at several times its size. So do streams of

@@ -1,0 +1,139 @@
+#include "codec/move_coder.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace lodestone::detail {
+namespace {
+
+constexpr std::int64_t kOne = 256;       // what a ring's radius is in features
+constexpr std::size_t kMostFaces = 256;  // of a star that are looked at
+
+constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
+
+Vec3i over_radius(const Vec3i& v, std::int64_t radius) { return v * kOne / radius; }
+
+}  // namespace
+
+MoveCoder::MoveCoder()
+    : normal_pulls_({0, 0, 0, 0}, 1 << 17),
+      tangent_pulls_({0, 0, 0, 0}, 1 << 17),
+      normal_size_({0, kHalf, 0, kQuarter, 0, 0}, 1 << 14),
+      tangent_size_({0, kHalf, 0, 0, kQuarter, 0}, 1 << 14) {}
+
+void MoveCoder::start(int from, int to, std::size_t vertex_count) {
+  from_ = from;
+  to_ = to;
+  misses_.assign(vertex_count, std::nullopt);
+  went_.assign(vertex_count, {});
+}
+
+/// Finds the half-edges across from a vertex, in order around it; false where it has no more than one face.
+bool MoveCoder::find_star(const PatchMesh& mesh, Index half) {
+  outer_.clear();
+  if (half == kNoIndex) return false;
+  // From the border on, where there is one.
+  Index first = half;
+  closed_ = true;
+  for (std::size_t i = 0; i < kMostFaces; ++i) {
+    const Index twin = mesh.twin(first);
+    if (twin == kNoIndex) {
+      closed_ = false;
+      break;
+    }
+    first = next_corner(twin);
+    if (first == half) break;
+  }
+  if (closed_) first = half;
+  for (Index at = first; outer_.size() < kMostFaces;) {
+    outer_.push_back(next_corner(at));
+    at = mesh.twin(previous_corner(at));
+    if (at == kNoIndex || at == first) {
+      closed_ = at == first;
+      break;
+    }
+  }
+  return true;
+}
+
+/// How well the moves of vertices around were predicted.
+void MoveCoder::find_misses() {
+  Miss sum;
+  Vec3i went;
+  int count = 0;
+  for (const Index corner : ring_.corners()) {
+    if (corner >= misses_.size() || !misses_[corner]) continue;
+    sum.normal += misses_[corner]->normal;
+    sum.tangent += misses_[corner]->tangent;
+    went = went + went_[corner];
+    ++count;
+  }
+  around_.reset();
+  went_around_ = count > 0 ? divide(went, count) : Vec3i{};
+  if (count > 0) around_ = Miss{sum.normal / count, sum.tangent / count};
+}
+
+void MoveCoder::learn(const Vec3i& start, const Vec3i& point, const Vec3i& position) {
+  const Vec3i& n = ring_.normal;
+  const Vec3i shift = over_radius(position * 16 - start, ring_.radius);
+  const std::int64_t lift = along(shift, n);
+  const Vec3i slide = shift - times(n, lift);
+  normal_pulls_.add(normal_, lift);
+  normal_pulls_.end_sample();
+  for (int c = 0; c < 3; ++c) tangent_pulls_.add(tangent_[static_cast<std::size_t>(c)], slide[c]);
+  tangent_pulls_.end_sample();
+  const Vec3i residual = position * 16 - point;
+  const std::int64_t off = along(residual, n);
+  const std::int64_t slid = square_root(squared(residual - times(n, off)));
+  const int log_radius = log2_16(static_cast<std::uint64_t>(ring_.radius));
+  normal_size_.add(traits_, log_of(std::abs(off) + 3) - log_radius);
+  normal_size_.end_sample();
+  tangent_size_.add(traits_, log_of(slid + 3) - log_radius);
+  tangent_size_.end_sample();
+}
+
+void MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
+                     std::span<const Vec3i> normals, Vec3i& position) {
+  const Vec3i start = positions[vertex] * 16;
+  if (!find_star(mesh, half)) {
+    NumberCoder::Guess guess;
+    guess.scale = std::max<std::int64_t>((std::int64_t{16} << from_) >> to_, 1);
+    for (int c = 0; c < 3; ++c) {
+      guess.value = start[c] >> to_;
+      position[c] = bare_.code(coder, position[c] >> to_, guess) * (std::int64_t{1} << to_);
+    }
+    return;
+  }
+  ring_.look(mesh, outer_, closed_, positions, normals);
+  find_misses();
+  const Vec3i& n = ring_.normal;
+  const std::array<Vec3i, kPulls> pulls = {ring_.mean - start, ring_.pulls[0], ring_.pulls[3], went_around_};
+  for (std::size_t i = 0; i < kPulls; ++i) {
+    const Vec3i pull = over_radius(pulls[i], ring_.radius);
+    normal_[i] = along(pull, n);
+    const Vec3i rest = pull - times(n, normal_[i]);
+    for (int c = 0; c < 3; ++c) tangent_[static_cast<std::size_t>(c)][i] = rest[c];
+  }
+  Vec3i shift = times(n, normal_pulls_.predict(normal_));
+  for (int c = 0; c < 3; ++c) shift[c] += tangent_pulls_.predict(tangent_[static_cast<std::size_t>(c)]);
+  const Vec3i point = start + shift * ring_.radius / kOne;
+  const int log_one = 64;
+  const int log_radius = log2_16(static_cast<std::uint64_t>(ring_.radius));
+  const int log_step = 16 * from_ + log_one;
+  const Miss around = around_.value_or(Miss{log_step - 24 - log_radius, log_step - 24 - log_radius});
+  traits_ = {log_one,       log_step - log_radius, log_of(normal_[0]) - log_one,
+             around.normal, around.tangent,        (around_ ? 0 : log_one)};
+  const auto size = [&](const Traits& fit) {
+    return static_cast<int>(std::clamp<std::int64_t>(log_radius + fit.predict(traits_), 16, 16 * 20));
+  };
+  CoordinateCoder::Expected expected = {point, {size(normal_size_), size(tangent_size_)}, closed_ ? 1 : 0, around_};
+  coordinates_.code(coder, ring_, expected, to_, position);
+  learn(start, point, position);
+  const Vec3i residual = position * 16 - point;
+  const std::int64_t off = along(residual, n);
+  const std::int64_t slid = square_root(squared(residual - times(n, off)));
+  went_[vertex] = position * 16 - start;
+  misses_[vertex] = Miss{log_of(std::abs(off) + 3) - log_radius, log_of(slid + 3) - log_radius};
+}
+
+}  // namespace lodestone::detail
