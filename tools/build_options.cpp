@@ -79,13 +79,12 @@ Result<void> check_stream_file(const BuildCommand& command) {
     const char* name;
     const char* why;
   };
-  const std::array given = {
-      Given{command.per_mesh, "--per-mesh", "a .lods is one mesh"},
-      Given{command.profile != "msft-lod", "--profile", "a .lods is one file"},
-      Given{command.no_stream, "--no-stream", "a .lods is a stream"},
-      Given{command.lossless, "--lossless", "a .lods is rounded to grids"},
-      Given{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
-      Given{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}};
+  const std::array given = {Given{command.per_mesh, "--per-mesh", "a .lods is one mesh"},
+                            Given{command.profile != "msft-lod", "--profile", "a .lods is one file"},
+                            Given{command.no_stream, "--no-stream", "a .lods is a stream"},
+                            Given{command.lossless, "--lossless", "a .lods is rounded to grids"},
+                            Given{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
+                            Given{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}};
   for (const Given& option : given)
     if (option.given) return fail(ErrorCode::InvalidArgument, detail::text(option.name, ": ", option.why));
   return {};

@@ -18,7 +18,6 @@ using lodestone::Attribute;
 using lodestone::DetailChoice;
 using lodestone::DrawCursor;
 using lodestone::EntryRange;
-using lodestone::Error;
 using lodestone::ErrorCode;
 using lodestone::Index;
 using lodestone::ProgressiveMesh;

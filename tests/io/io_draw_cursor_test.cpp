@@ -42,7 +42,7 @@ class Engine {
     const std::vector<Vec3f> positions = positions_at(*mesh_, cursor_->position());
     for (std::size_t w = 0; w < cursor_->wedge_count(); ++w) {
       const Vec3f& there = positions[mesh_->wedge_vertex[w]];
-      REQUIRE(std::memcmp(&positions_[3 * w], &there, sizeof there) == 0);
+      REQUIRE(Vec3f{positions_[3 * w], positions_[3 * w + 1], positions_[3 * w + 2]} == there);
     }
     for (std::size_t group = 0; group < corners_.size(); ++group) {
       const auto wanted = cursor_->corners(group);

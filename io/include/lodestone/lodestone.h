@@ -123,7 +123,8 @@ typedef struct lodestone_attribute {
 LODESTONE_API int32_t lodestone_stream_get_attribute(lodestone_stream* stream, uint32_t index,
                                                      lodestone_attribute* attribute);
 
-/* Copies an attribute of wedges [begin, end), element_bytes each. It never changes: what is in a vertex buffer stays. `room`: bytes that `out` has place for. */
+/* Copies an attribute of wedges [begin, end), element_bytes each. It never changes: what is in a vertex buffer stays.
+ * `room`: bytes that `out` has place for. */
 LODESTONE_API int32_t lodestone_stream_copy_attribute(lodestone_stream* stream, uint32_t index, uint32_t begin,
                                                       uint32_t end, void* out, size_t room);
 
@@ -180,8 +181,8 @@ LODESTONE_API int32_t lodestone_cursor_take_new_wedges(lodestone_cursor* cursor,
 LODESTONE_API int32_t lodestone_cursor_take_moved_wedges(lodestone_cursor* cursor, size_t gap, lodestone_range* ranges,
                                                          size_t room, size_t* count);
 
-/* Copies the positions of wedges [begin, end) of the stream to `out`, three floats each, as the cursor's level has them.
- * `room`: floats that `out` has place for. */
+/* Copies the positions of wedges [begin, end) of the stream to `out`, three floats each, as the cursor's level has
+ * them. `room`: floats that `out` has place for. */
 LODESTONE_API int32_t lodestone_cursor_copy_positions(lodestone_cursor* cursor, uint32_t begin, uint32_t end,
                                                       float* out, size_t room);
 

@@ -91,10 +91,10 @@ struct CompactChunk {
 /// LimitExceeded where the mesh has more of anything than a stream can hold; Unsupported where records do not fit the
 /// faces that they replace; Cancelled.
 ///
-/// `levels`, coarse to fine, say where the vertices of some levels lie so that those are closer to the full mesh: records
-/// after them move them on. Positions up to such a level are rounded the more coarsely the less precise they need be.
-/// The deviation of what lies between two such levels is that of the mesh's own, and how far its vertices are moved.
-/// Errors besides: InvalidArgument where a level is none of the mesh, or not finer than the one before.
+/// `levels`, coarse to fine, say where the vertices of some levels lie so that those are closer to the full mesh:
+/// records after them move them on. Positions up to such a level are rounded the more coarsely the less precise they
+/// need be. The deviation of what lies between two such levels is that of the mesh's own, and how far its vertices are
+/// moved. Errors besides: InvalidArgument where a level is none of the mesh, or not finer than the one before.
 Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactOptions& options = {},
                                      std::span<const PlacedLevel> levels = {});
 
