@@ -10,8 +10,9 @@ namespace {
 constexpr std::int64_t kLeastVariance = 1 << 10;
 constexpr std::int64_t kMostRatio = std::int64_t{1} << 32;
 constexpr std::int64_t kMostResidual = std::int64_t{1} << 26;
-constexpr std::int64_t kOne = 256;
-constexpr std::int64_t kRoundness = 20;  // / 256: how much of the spread does not follow the ring's shape
+constexpr std::int64_t kRoundness = 20,
+                       kWhole =
+                           256;  // the former over the latter: how much of the spread does not follow the ring's shape
 
 /// A normal distribution of three coordinates, taken apart: each one's mean and variance given those before it.
 struct Coordinates {
@@ -32,7 +33,7 @@ Coordinates take_apart(const Ring& ring, std::int64_t normal_variance) {
   const auto covariance = [&](int i, int j) {
     const std::int64_t normal = n[i] * n[j] >> (2 * kUnitBits - kRatioBits);
     const std::int64_t across = (i == j ? std::int64_t{1} << kRatioBits : 0) - normal;
-    return product(normal, normal_variance) + ((across * kRoundness + ring.spread[i][j] * (kOne - kRoundness)) >> 8);
+    return product(normal, normal_variance) + ((across * kRoundness + ring.spread[i][j] * (kWhole - kRoundness)) >> 8);
   };
   Coordinates c;
   std::stable_sort(c.order.begin(), c.order.end(), [&](int i, int j) { return std::abs(n[i]) < std::abs(n[j]); });
@@ -50,6 +51,18 @@ Coordinates take_apart(const Ring& ring, std::int64_t normal_variance) {
 }
 
 }  // namespace
+
+bool is_on_grid(const Vec3i& position, int bits) {
+  const std::int64_t end = std::int64_t{1} << bits;
+  return std::min({position.x, position.y, position.z}) >= 0 && std::max({position.x, position.y, position.z}) < end;
+}
+
+Miss miss_of(const Vec3i& residual, const Ring& ring) {
+  const std::int64_t off = along(residual, ring.normal);
+  const std::int64_t slid = square_root(squared(residual - times(ring.normal, off)));
+  const int log_radius = log2_16(static_cast<std::uint64_t>(ring.radius));
+  return {log_of(std::abs(off) + 3) - log_radius, log_of(slid + 3) - log_radius};
+}
 
 void CoordinateCoder::code(BitCoder& coder, const Ring& ring, const Expected& expected, int shift, Vec3i& position) {
   const Miss& size = expected.size;

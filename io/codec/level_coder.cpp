@@ -26,6 +26,7 @@ LevelCoder::LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec>
       wedge_coder_(limits.group_count),
       loose_coder_(limits.group_count),
       points_(limits.grid_bits),
+      move_coder_(limits.grid_bits),
       attributes_(attributes),
       flags_(std::array<std::uint32_t, 1>{kFlags}, 1) {}
 
@@ -80,8 +81,7 @@ bool LevelCoder::code_step(BitCoder& coder, int& step) {
 bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std::span<const Vec3i> targets) {
   if (++move_count_ > kMostMovesEach * limits_.most_vertices) return false;
   Vec3i to = targets.empty() ? Vec3i{} : targets[vertex];
-  move_coder_.code(coder, mesh_, vertex, half, positions_, points_.normals(), to);
-  if (!points_.is_on_grid(to)) return false;
+  if (!move_coder_.code(coder, mesh_, vertex, half, positions_, points_.normals(), to)) return false;
   if (!(to == positions_[vertex])) moves_.push_back({star, vertex, positions_[vertex], to});
   positions_[vertex] = to;
   moved_[vertex] = 1;

@@ -6,17 +6,15 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr std::int64_t kOne = 256;       // what a ring's radius is in features
 constexpr std::size_t kMostFaces = 256;  // of a star that are looked at
 
 constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
 
-Vec3i over_radius(const Vec3i& v, std::int64_t radius) { return v * kOne / radius; }
-
 }  // namespace
 
-MoveCoder::MoveCoder()
-    : normal_pulls_({0, 0, 0, 0}, 1 << 17),
+MoveCoder::MoveCoder(int grid_bits)
+    : grid_bits_(grid_bits),
+      normal_pulls_({0, 0, 0, 0}, 1 << 17),
       tangent_pulls_({0, 0, 0, 0}, 1 << 17),
       normal_size_({0, kHalf, 0, kQuarter, 0, 0}, 1 << 14),
       tangent_size_({0, kHalf, 0, 0, kQuarter, 0}, 1 << 14) {}
@@ -28,7 +26,7 @@ void MoveCoder::start(int from, int to, std::size_t vertex_count) {
   went_.assign(vertex_count, {});
 }
 
-/// Finds the half-edges across from a vertex, in order around it; false where it has no more than one face.
+/// Finds the half-edges across from a vertex, in order around it; false where it has no face.
 bool MoveCoder::find_star(const PatchMesh& mesh, Index half) {
   outer_.clear();
   if (half == kNoIndex) return false;
@@ -73,26 +71,22 @@ void MoveCoder::find_misses() {
   if (count > 0) around_ = Miss{sum.normal / count, sum.tangent / count};
 }
 
-void MoveCoder::learn(const Vec3i& start, const Vec3i& point, const Vec3i& position) {
+void MoveCoder::learn(const Vec3i& went, const Miss& miss) {
   const Vec3i& n = ring_.normal;
-  const Vec3i shift = over_radius(position * 16 - start, ring_.radius);
+  const Vec3i shift = over_radius(went, ring_);
   const std::int64_t lift = along(shift, n);
   const Vec3i slide = shift - times(n, lift);
   normal_pulls_.add(normal_, lift);
   normal_pulls_.end_sample();
   for (int c = 0; c < 3; ++c) tangent_pulls_.add(tangent_[static_cast<std::size_t>(c)], slide[c]);
   tangent_pulls_.end_sample();
-  const Vec3i residual = position * 16 - point;
-  const std::int64_t off = along(residual, n);
-  const std::int64_t slid = square_root(squared(residual - times(n, off)));
-  const int log_radius = log2_16(static_cast<std::uint64_t>(ring_.radius));
-  normal_size_.add(traits_, log_of(std::abs(off) + 3) - log_radius);
+  normal_size_.add(traits_, miss.normal);
   normal_size_.end_sample();
-  tangent_size_.add(traits_, log_of(slid + 3) - log_radius);
+  tangent_size_.add(traits_, miss.tangent);
   tangent_size_.end_sample();
 }
 
-void MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
+bool MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
                      std::span<const Vec3i> normals, Vec3i& position) {
   const Vec3i start = positions[vertex] * 16;
   if (!find_star(mesh, half)) {
@@ -102,21 +96,21 @@ void MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index
       guess.value = start[c] >> to_;
       position[c] = bare_.code(coder, position[c] >> to_, guess) * (std::int64_t{1} << to_);
     }
-    return;
+    return is_on_grid(position, grid_bits_);
   }
   ring_.look(mesh, outer_, closed_, positions, normals);
   find_misses();
   const Vec3i& n = ring_.normal;
   const std::array<Vec3i, kPulls> pulls = {ring_.mean - start, ring_.pulls[0], ring_.pulls[3], went_around_};
   for (std::size_t i = 0; i < kPulls; ++i) {
-    const Vec3i pull = over_radius(pulls[i], ring_.radius);
+    const Vec3i pull = over_radius(pulls[i], ring_);
     normal_[i] = along(pull, n);
     const Vec3i rest = pull - times(n, normal_[i]);
     for (int c = 0; c < 3; ++c) tangent_[static_cast<std::size_t>(c)][i] = rest[c];
   }
   Vec3i shift = times(n, normal_pulls_.predict(normal_));
   for (int c = 0; c < 3; ++c) shift[c] += tangent_pulls_.predict(tangent_[static_cast<std::size_t>(c)]);
-  const Vec3i point = start + shift * ring_.radius / kOne;
+  const Vec3i point = start + shift * ring_.radius / kRadius;
   const int log_one = 64;
   const int log_radius = log2_16(static_cast<std::uint64_t>(ring_.radius));
   const int log_step = 16 * from_ + log_one;
@@ -128,12 +122,11 @@ void MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index
   };
   CoordinateCoder::Expected expected = {point, {size(normal_size_), size(tangent_size_)}, closed_ ? 1 : 0, around_};
   coordinates_.code(coder, ring_, expected, to_, position);
-  learn(start, point, position);
-  const Vec3i residual = position * 16 - point;
-  const std::int64_t off = along(residual, n);
-  const std::int64_t slid = square_root(squared(residual - times(n, off)));
+  if (!is_on_grid(position, grid_bits_)) return false;
   went_[vertex] = position * 16 - start;
-  misses_[vertex] = Miss{log_of(std::abs(off) + 3) - log_radius, log_of(slid + 3) - log_radius};
+  misses_[vertex] = miss_of(position * 16 - point, ring_);
+  learn(went_[vertex], *misses_[vertex]);
+  return true;
 }
 
 }  // namespace lodestone::detail

@@ -21,13 +21,14 @@ namespace lodestone::detail {
 /// Codes where vertices of a level go that its rounds move, each from where it lies and the ring around it.
 class MoveCoder {
  public:
-  MoveCoder();
+  explicit MoveCoder(int grid_bits);
 
   /// From now on vertices that lie on multiples of 2^`from` go to multiples of 2^`to`; none of so many has moved.
   void start(int from, int to, std::size_t vertex_count);
 
-  /// Codes where a vertex goes. `half`: a half-edge that leaves it, or kNoIndex; `normals`: of the vertices.
-  void code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
+  /// Codes where a vertex goes. `half`: a half-edge that leaves it, or kNoIndex; `normals`: of the vertices. False
+  /// where what is read lies off the grid.
+  bool code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
             std::span<const Vec3i> normals, Vec3i& position);
 
  private:
@@ -38,8 +39,9 @@ class MoveCoder {
 
   bool find_star(const PatchMesh& mesh, Index half);
   void find_misses();
-  void learn(const Vec3i& start, const Vec3i& point, const Vec3i& position);
+  void learn(const Vec3i& went, const Miss& miss);
 
+  int grid_bits_;
   int from_ = 0, to_ = 0;
   CoordinateCoder coordinates_;
   NumberCoder bare_;  // of vertices without faces

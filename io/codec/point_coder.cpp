@@ -14,15 +14,11 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr std::int64_t kOne = 256;  // what a ring's radius is in features
-
 // Until something is learnt: sixteenths of logarithms over the radius.
 constexpr int kUsualNormalMiss = -48;
 constexpr int kUsualTangentMiss = -32;
 
 constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
-
-Vec3i over_radius(const Vec3i& v, std::int64_t radius) { return v * kOne / radius; }
 
 }  // namespace
 
@@ -33,11 +29,6 @@ PointCoder::PointCoder(int grid_bits)
       normal_size_({0, kHalf, kQuarter, kQuarter}, 1 << 14),
       tangent_size_({0, kHalf, 0, kHalf}, 1 << 14) {}
 
-bool PointCoder::is_on_grid(const Vec3i& position) const {
-  const std::int64_t end = std::int64_t{1} << grid_bits_;
-  return std::min({position.x, position.y, position.z}) >= 0 && std::max({position.x, position.y, position.z}) < end;
-}
-
 bool PointCoder::code_base(BitCoder& coder, Vec3i& position) {
   misses_.emplace_back();
   base_count_ = misses_.size();
@@ -47,7 +38,7 @@ bool PointCoder::code_base(BitCoder& coder, Vec3i& position) {
   guess.scale = half / 4;
   for (int c = 0; c < 3; ++c)
     position[c] = base_.code(coder, position[c] >> shift_, guess) * (std::int64_t{1} << shift_);
-  return is_on_grid(position);
+  return is_on_grid(position, grid_bits_);
 }
 
 bool PointCoder::code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position) {
@@ -58,7 +49,7 @@ bool PointCoder::code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position
     likely.value = guess[c] * 16 >> shift_;
     position[c] = loose_.code(coder, position[c] >> shift_, likely) * (std::int64_t{1} << shift_);
   }
-  return is_on_grid(position);
+  return is_on_grid(position, grid_bits_);
 }
 
 void PointCoder::start_round(const PatchMesh& mesh, std::span<const Vec3i> positions) {
@@ -98,7 +89,7 @@ void PointCoder::find_misses() {
 void PointCoder::predict(bool closed) {
   const Vec3i& n = ring_.normal;
   for (std::size_t i = 0; i < Ring::kPulls; ++i) {
-    const Vec3i pull = over_radius(ring_.pulls[i], ring_.radius);
+    const Vec3i pull = over_radius(ring_.pulls[i], ring_);
     prediction_.normal[i] = along(pull, n);
     const Vec3i rest = pull - times(n, prediction_.normal[i]);
     for (int c = 0; c < 3; ++c) prediction_.tangent[static_cast<std::size_t>(c)][i] = rest[c];
@@ -108,7 +99,7 @@ void PointCoder::predict(bool closed) {
   for (int c = 0; c < 3; ++c)
     shift[c] += tangent_pulls_[size].predict(prediction_.tangent[static_cast<std::size_t>(c)]);
   const std::int64_t r = ring_.radius;
-  prediction_.point = ring_.mean + shift * r / kOne;
+  prediction_.point = ring_.mean + shift * r / kRadius;
 }
 
 void PointCoder::predict_size() {
@@ -138,7 +129,7 @@ void PointCoder::predict_size() {
 
 void PointCoder::learn(const Vec3i& position, bool closed) {
   const Vec3i& n = ring_.normal;
-  const Vec3i shift = over_radius(position * 16 - ring_.mean, ring_.radius);
+  const Vec3i shift = over_radius(position * 16 - ring_.mean, ring_);
   const std::int64_t lift = along(shift, n);
   const Vec3i slide = shift - times(n, lift);
   const std::size_t size = size_class(closed);
@@ -147,11 +138,7 @@ void PointCoder::learn(const Vec3i& position, bool closed) {
   for (int c = 0; c < 3; ++c) tangent_pulls_[size].add(prediction_.tangent[static_cast<std::size_t>(c)], slide[c]);
   tangent_pulls_[size].end_sample();
 
-  const Vec3i residual = position * 16 - prediction_.point;
-  const std::int64_t off = along(residual, n);
-  const std::int64_t slid = square_root(squared(residual - times(n, off)));
-  const int log_radius = log2_16(static_cast<std::uint64_t>(ring_.radius));
-  const Miss miss = {log_of(std::abs(off) + 3) - log_radius, log_of(slid + 3) - log_radius};
+  const Miss miss = miss_of(position * 16 - prediction_.point, ring_);
   normal_size_.add(prediction_.normal_traits, miss.normal);
   normal_size_.end_sample();
   tangent_size_.add(prediction_.tangent_traits, miss.tangent);
@@ -170,7 +157,7 @@ bool PointCoder::code(BitCoder& coder, const PatchMesh& mesh, std::span<const In
   CoordinateCoder::Expected expected = {prediction_.point, prediction_.size, std::clamp(ring_.size() - 3, 0, 3), {}};
   if (has_misses_) expected.around = around_;
   coordinates_.code(coder, ring_, expected, shift_, position);
-  if (!is_on_grid(position)) return false;
+  if (!is_on_grid(position, grid_bits_)) return false;
   learn(position, closed);
   return true;
 }

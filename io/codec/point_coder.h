@@ -24,7 +24,6 @@ class PointCoder {
 
   /// From now on coordinates are multiples of 2^shift.
   void set_step(int shift) { shift_ = shift; }
-  bool is_on_grid(const Vec3i& position) const;
   std::span<const Vec3i> normals() const { return normals_; }
 
   /// Codes the next vertex of the base mesh. False where what is read lies off the grid.
