@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -11,6 +10,7 @@
 
 #include <lodestone/core/detail/compaction.h>
 #include <lodestone/core/detail/edges.h>
+#include <lodestone/core/detail/finite.h>
 #include <lodestone/core/detail/hash_index.h>
 #include <lodestone/core/detail/index_limit.h>
 #include <lodestone/core/detail/position_index.h>
@@ -33,14 +33,13 @@ using detail::CompactedMesh;
 using detail::cut_into_fans;
 using detail::HalfEdge;
 using detail::HashIndex;
+using detail::is_finite;
 using detail::make_winding_coherent;
 using detail::mix_bits;
 using detail::pick_entries;
 using detail::PositionIndex;
 using detail::sorted_edges;
 using detail::text;
-
-bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 Result<void> check_lengths(const TriangleSoup& soup) {
   LODESTONE_CHECK(detail::check_index_limit("points", soup.positions.size()));

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <lodestone/core/detail/cancelled.h>
+#include <lodestone/core/detail/finite.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -104,8 +105,7 @@ Result<void> check_levels(const ProgressiveMesh& mesh, std::span<const PlacedLev
       return wrong(text("placed level ", level.position, " has an error of ", level.deviation, " or a precision of ",
                         level.precision));
     for (const Vec3f& p : level.positions)
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        return wrong(text("placed level ", level.position, " has a position that is not finite"));
+      if (!is_finite(p)) return wrong(text("placed level ", level.position, " has a position that is not finite"));
   }
   return {};
 }

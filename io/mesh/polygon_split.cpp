@@ -14,6 +14,8 @@
 
 #include <geos_c.h>
 
+#include <lodestone/core/detail/finite.h>
+
 namespace lodestone::detail {
 namespace {
 
@@ -25,8 +27,6 @@ struct Point2 {
   double x = 0, y = 0;
   friend auto operator<=>(const Point2&, const Point2&) = default;
 };
-
-bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Returns twice the area vector of a polygon, by Newell's sum around its first corner.
 Vec3 newell_normal(std::span<const Vec3f> polygon) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/finite.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 
@@ -89,9 +90,7 @@ Result<void> StreamDecoder::read_chunk(const StreamChunk& entry, std::span<const
 /// Checks the positions and errors that a chunk has added.
 Result<void> StreamDecoder::check_values(std::size_t first_vertex, std::size_t first_error) const {
   for (std::size_t v = first_vertex; v < mesh_.positions.size(); ++v) {
-    const Vec3f& p = mesh_.positions[v];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      return broken(text("vertex ", v, " has a position that is not finite"));
+    if (!is_finite(mesh_.positions[v])) return broken(text("vertex ", v, " has a position that is not finite"));
   }
   for (std::size_t p = first_error; p < mesh_.deviation.size(); ++p)
     for (const float error : {mesh_.deviation[p], mesh_.curvature_error[p]})

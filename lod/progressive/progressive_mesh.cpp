@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include <lodestone/core/detail/finite.h>
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/lod/cursor.h>
@@ -14,6 +15,7 @@
 namespace lodestone {
 namespace {
 
+using detail::is_finite;
 using detail::text;
 
 auto defect(const std::string& message) { return fail(ErrorCode::Malformed, message); }
@@ -87,8 +89,6 @@ Result<void> check_arrays(const ProgressiveMesh& mesh) {
                          mesh.wedge_vertex.size(), " wedges"));
   return {};
 }
-
-bool is_finite(const Vec3f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Checks that moves name vertices that are there, and go on from where those lie.
 Result<void> check_moves(const ProgressiveMesh& mesh) {

@@ -189,7 +189,7 @@ TEST_CASE("levels that are none of the mesh are refused") {
     const auto stream = encode_compact(mesh, {}, levels);
     REQUIRE(!stream);
     CHECK(stream.error().code == ErrorCode::InvalidArgument);
-    CHECK_THAT(stream.error().message, Catch::Matchers::Contains(message));
+    CHECK_THAT(stream.error().message, contains(message));
   };
   refused([](auto& l) { std::swap(l[0], l[1]); }, "does not lie between");
   refused([](auto& l) { l[1] = l[0]; }, "does not lie between");

@@ -17,6 +17,7 @@ import '@babylonjs/core/Animations/animatable.js';
 import '@babylonjs/loaders/glTF/2.0/index.js';
 import { DetailBudget } from 'lodestone/budget';
 import { refinementOf, registerLodestone } from 'lodestone/babylon';
+import { settle } from './settle.js';
 import { similarity } from './ssim.js';
 
 const SIZE = 512;
@@ -157,18 +158,6 @@ window.finish = async () => {
   return window.settle(10);
 };
 
-/** Draws frames until nothing changes for a while. */
-window.settle = async (patience = 60) => {
-  let state = window.drawFrame();
-  let known = updates;
-  for (let still = 0; still < patience; ) {
-    await new Promise((resolve) => setTimeout(resolve, 10));
-    const next = window.drawFrame();
-    still = updates === known && next.bytes === state.bytes ? still + 1 : 0;
-    known = updates;
-    state = next;
-  }
-  return state;
-};
+window.settle = (patience) => settle(window.drawFrame, () => updates, patience);
 
 window.ready = true;

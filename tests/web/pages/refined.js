@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import { DetailBudget } from 'lodestone/budget';
 import { LodestonePlugin } from 'lodestone/gltf';
 import { makeLoader } from './scene.js';
+import { settle } from './settle.js';
 import { similarity } from './ssim.js';
 
 const SIZE = 512;
@@ -99,19 +100,7 @@ window.drawFrame = () => {
   };
 };
 
-/** Draws frames until nothing changes for a while. */
-window.settle = async (patience = 60) => {
-  let state = window.drawFrame();
-  let known = updates;
-  for (let still = 0; still < patience; ) {
-    await new Promise((resolve) => setTimeout(resolve, 10));
-    const next = window.drawFrame();
-    still = updates === known && next.bytes === state.bytes ? still + 1 : 0;
-    known = updates;
-    state = next;
-  }
-  return state;
-};
+window.settle = (patience) => settle(window.drawFrame, () => updates, patience);
 
 /** Waits for all of all streams: with a pixel error of 0 all is wanted. */
 window.finish = async () => {
