@@ -1,0 +1,1 @@
+// What headers.h is precompiled with.
