@@ -32,75 +32,72 @@ constexpr std::array<std::int16_t, 4096> make_odds() {
 }
 constexpr std::array<std::int16_t, 4096> kOdds = make_odds();
 
-constexpr std::int64_t kMostWeight = 1 << 20U;
-constexpr int kSlowest = 150;  // a counter forgets as an average over this many bits does
-constexpr std::array<std::int32_t, kSlowest + 1> make_rates() {
-  std::array<std::int32_t, kSlowest + 1> rates{};
-  for (int seen = 0; seen <= kSlowest; ++seen) rates[seen] = 2 * 65536 / (2 * seen + 3);
+constexpr int kWeightBits = 13;  // fractional: weights lie within 4
+constexpr int kSlowest = 30;     // a counter forgets as an average over this many bits does
+constexpr std::array<std::uint32_t, kSlowest + 1> make_rates() {
+  std::array<std::uint32_t, kSlowest + 1> rates{};
+  for (int seen = 0; seen <= kSlowest; ++seen) rates[seen] = static_cast<std::uint32_t>(2 * 65536 / (2 * seen + 3));
   return rates;
 }
-constexpr std::array<std::int32_t, kSlowest + 1> kRates = make_rates();  // by how often a counter was seen
+constexpr std::array<std::uint32_t, kSlowest + 1> kRates = make_rates();  // by how often a counter was seen
 
 constexpr int kWeightsSettle = 60;  // bits after which weights are learnt more slowly
 
 }  // namespace
 
+/// Counts a bit; `flip`: 65535 for 1, 0 for 0.
+inline void BitMixer::Counter::add(std::uint32_t flip) {
+  const std::uint32_t other = one ^ flip;
+  one = static_cast<std::uint16_t>((other - (other * kRates[seen] >> 16U)) ^ flip);
+  seen = static_cast<std::uint16_t>(seen + (seen < kSlowest ? 1 : 0));
+}
+
 BitMixer::BitMixer(std::span<const std::uint32_t> context_counts, std::uint32_t selector_count)
     : input_count_(static_cast<int>(context_counts.size())) {
-  assert(input_count_ == 1 || input_count_ == 2 || input_count_ == 5 || input_count_ == 7 || input_count_ == 9);
+  assert(input_count_ == 1 || input_count_ == 2 || input_count_ == 5 || input_count_ == 7 || input_count_ == 8);
   std::uint32_t count = 0;
   for (int i = 0; i < input_count_; ++i) {
     first_[i] = count;
     count += context_counts[i];
   }
   counters_.resize(count);
-  weights_.assign(std::size_t(input_count_) * selector_count, 65536 * 12 / 10 / input_count_);
+  const auto weight = static_cast<std::int16_t>((12 << kWeightBits) / 10 / input_count_);
+  // Those of inputs that are not there are never asked for.
+  weights_.assign(selector_count, Lanes(weight, weight, weight, weight, weight, weight, weight, weight));
   used_.assign(selector_count, 0);
 }
 
 /// The number of inputs is known to the compiler: it is what most of the time goes into.
-template <int N>
-int BitMixer::code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector) {
-  std::array<std::int32_t, N> odds;
-  std::array<Counter*, N> counters;
-  std::int32_t* weights = weights_.data() + std::size_t(selector) * N;
-  std::int64_t sum = 0;
-  for (int i = 0; i < N; ++i) {
-    counters[i] = &counters_[first_[i] + contexts[i]];
-    odds[i] = kOdds[counters[i]->one >> 4U];
-    sum += std::int64_t{odds[i]} * weights[i];
-  }
-  const int mixed = static_cast<int>(std::clamp<std::int64_t>(sum >> 16U, -kOddsLimit, kOddsLimit));
+template <std::size_t... I>
+int BitMixer::code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector,
+                         std::index_sequence<I...>) {
+  Counter* const counters[] = {&counters_[first_[I] + contexts[I]]...};
+  const Lanes odds(kOdds[counters[I]->one >> 4U]...);
+  Lanes& weights = weights_[selector];
+  const int mixed = std::clamp(dot(odds, weights) >> kWeightBits, -kOddsLimit, kOddsLimit);
   const std::int32_t one = std::clamp(probability(mixed), 16, 65520);
   bit = coder.code(bit, static_cast<std::uint32_t>(one));
 
-  const std::int32_t error = (bit << 16U) - bit - one;
-  const int rate = used_[selector] < kWeightsSettle ? 14 : 15;
-  if (used_[selector] < kWeightsSettle) ++used_[selector];
-  const std::int32_t target = bit != 0 ? 65535 : 0;
-  for (int i = 0; i < N; ++i) {
-    const std::int64_t shift = (std::int64_t{odds[i]} * error + (1 << (rate - 1))) >> rate;
-    weights[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(weights[i] + shift, -kMostWeight, kMostWeight));
-    Counter& counter = *counters[i];
-    const auto step = static_cast<std::int32_t>((std::int64_t{target - counter.one} * kRates[counter.seen]) >> 16);
-    counter.one = static_cast<std::uint16_t>(counter.one + step);
-    if (counter.seen < kSlowest) ++counter.seen;
-  }
+  const bool has_settled = used_[selector] >= kWeightsSettle;
+  if (!has_settled) ++used_[selector];
+  weights.add_product(odds, static_cast<std::int16_t>(((bit << 16U) - bit - one) >> (has_settled ? 2 : 1)));
+  const std::uint32_t flip = bit != 0 ? 65535 : 0;  // counts zeros as ones
+  (counters[I]->add(flip), ...);
   return bit;
 }
 
 int BitMixer::code(BitCoder& coder, int bit, std::span<const std::uint32_t> contexts, std::uint32_t selector) {
   switch (input_count_) {
     case 1:
-      return code_mixed<1>(coder, bit, contexts.data(), selector);
+      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<1>());
     case 2:
-      return code_mixed<2>(coder, bit, contexts.data(), selector);
+      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<2>());
     case 5:
-      return code_mixed<5>(coder, bit, contexts.data(), selector);
+      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<5>());
     case 7:
-      return code_mixed<7>(coder, bit, contexts.data(), selector);
+      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<7>());
     default:
-      return code_mixed<9>(coder, bit, contexts.data(), selector);
+      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<8>());
   }
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "codec/bit_coder.h"
+#include "codec/lanes.h"
 
 namespace lodestone::detail {
 
@@ -15,7 +18,7 @@ namespace lodestone::detail {
 /// Source: logistic mixing as in Mahoney, Adaptive weighing of context models for lossless data compression (2005).
 class BitMixer {
  public:
-  static constexpr int kMostInputs = 9;
+  static constexpr int kMostInputs = Lanes::kCount;
 
   /// One input for each entry of `context_counts`, whose contexts are numbered below it; a set of weights for each of
   /// `selector_count`.
@@ -28,15 +31,17 @@ class BitMixer {
   struct Counter {
     std::uint16_t one = 32768;  // probability of 1, / 65536
     std::uint16_t seen = 0;
+    void add(std::uint32_t flip);
   };
-  template <int N>
-  int code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector);
+  template <std::size_t... I>
+  int code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector,
+                 std::index_sequence<I...>);
 
   int input_count_;
   std::array<std::uint32_t, kMostInputs> first_{};  // of each input's counters
   std::vector<Counter> counters_;
-  std::vector<std::int32_t> weights_;  // 16 fractional bits
-  std::vector<std::uint16_t> used_;    // by selector: how often, up to a limit
+  std::vector<Lanes> weights_;       // by selector: 13 fractional bits
+  std::vector<std::uint16_t> used_;  // by selector: how often, up to a limit
 };
 
 }  // namespace lodestone::detail

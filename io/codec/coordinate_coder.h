@@ -19,10 +19,6 @@ struct Miss {
 /// Whether coordinates are whole numbers of so many bits.
 bool is_on_grid(const Vec3i& position, int bits);
 
-/// What a length comes to where a ring's radius is this.
-inline constexpr std::int64_t kRadius = 256;
-inline Vec3i over_radius(const Vec3i& v, const Ring& ring) { return v * kRadius / ring.radius; }
-
 /// How wrong a prediction was, over the ring's radius. `residual`: sixteenths of a step.
 Miss miss_of(const Vec3i& residual, const Ring& ring);
 

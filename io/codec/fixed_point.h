@@ -73,8 +73,8 @@ constexpr Vec3i cross(const Vec3i& a, const Vec3i& b) {
 inline Vec3i divide(const Vec3i& a, std::int64_t b) { return {divide(a.x, b), divide(a.y, b), divide(a.z, b)}; }
 /// Halves a vector until its coordinates have no more than so many bits; says how often.
 inline int shorten(Vec3i& v, int bits) {
-  int shift = 0;
-  while (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) >> shift >= std::int64_t{1} << bits) ++shift;
+  const auto largest = static_cast<std::uint64_t>(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}));
+  const int shift = std::max(0, static_cast<int>(std::bit_width(largest)) - bits);
   v = {v.x >> shift, v.y >> shift, v.z >> shift};
   return shift;
 }

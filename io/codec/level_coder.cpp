@@ -91,8 +91,8 @@ bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std
 
 bool LevelCoder::code_moves(BitCoder& coder, std::span<const Vec3i> targets) {
   moves_.clear();
-  if (unmoved_count_ == 0) return true;
   points_.start_round(mesh_, positions_);
+  if (unmoved_count_ == 0) return true;
   Index star = 0;
   const auto move_ends = [&](Index half) {
     const Index from = mesh_.from(half), to = mesh_.to(half);
@@ -155,7 +155,6 @@ bool LevelCoder::code_places(BitCoder& coder, std::span<const Index> joins) {
     joined_[i] = coder.code_raw(joins.empty() ? 0 : joins[i], std::bit_width(i - 1));
     if (joined_[i] >= i || joined_[joined_[i]] != joined_[i]) return false;
   }
-  points_.start_round(mesh_, positions_);
   add_stars();
   return true;
 }

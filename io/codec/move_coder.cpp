@@ -14,8 +14,7 @@ constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
 
 MoveCoder::MoveCoder(int grid_bits)
     : grid_bits_(grid_bits),
-      normal_pulls_({0, 0, 0, 0}, 1 << 17),
-      tangent_pulls_({0, 0, 0, 0}, 1 << 17),
+      shift_({0, 0, 0, 0}, {0, 0, 0, 0}, 1 << 17),
       normal_size_({0, kHalf, 0, kQuarter, 0, 0}, 1 << 14),
       tangent_size_({0, kHalf, 0, 0, kQuarter, 0}, 1 << 14) {}
 
@@ -71,21 +70,6 @@ void MoveCoder::find_misses() {
   if (count > 0) around_ = Miss{sum.normal / count, sum.tangent / count};
 }
 
-void MoveCoder::learn(const Vec3i& went, const Miss& miss) {
-  const Vec3i& n = ring_.normal;
-  const Vec3i shift = over_radius(went, ring_);
-  const std::int64_t lift = along(shift, n);
-  const Vec3i slide = shift - times(n, lift);
-  normal_pulls_.add(normal_, lift);
-  normal_pulls_.end_sample();
-  for (int c = 0; c < 3; ++c) tangent_pulls_.add(tangent_[static_cast<std::size_t>(c)], slide[c]);
-  tangent_pulls_.end_sample();
-  normal_size_.add(traits_, miss.normal);
-  normal_size_.end_sample();
-  tangent_size_.add(traits_, miss.tangent);
-  tangent_size_.end_sample();
-}
-
 bool MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
                      std::span<const Vec3i> normals, Vec3i& position) {
   const Vec3i start = positions[vertex] * 16;
@@ -100,22 +84,12 @@ bool MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index
   }
   ring_.look(mesh, outer_, closed_, positions, normals);
   find_misses();
-  const Vec3i& n = ring_.normal;
-  const std::array<Vec3i, kPulls> pulls = {ring_.mean - start, ring_.pulls[0], ring_.pulls[3], went_around_};
-  for (std::size_t i = 0; i < kPulls; ++i) {
-    const Vec3i pull = over_radius(pulls[i], ring_);
-    normal_[i] = along(pull, n);
-    const Vec3i rest = pull - times(n, normal_[i]);
-    for (int c = 0; c < 3; ++c) tangent_[static_cast<std::size_t>(c)][i] = rest[c];
-  }
-  Vec3i shift = times(n, normal_pulls_.predict(normal_));
-  for (int c = 0; c < 3; ++c) shift[c] += tangent_pulls_.predict(tangent_[static_cast<std::size_t>(c)]);
-  const Vec3i point = start + shift * ring_.radius / kRadius;
+  const Vec3i point = start + shift_.predict({ring_.mean - start, ring_.pulls[0], ring_.pulls[3], went_around_}, ring_);
   const int log_one = 64;
   const int log_radius = log2_16(static_cast<std::uint64_t>(ring_.radius));
   const int log_step = 16 * from_ + log_one;
   const Miss around = around_.value_or(Miss{log_step - 24 - log_radius, log_step - 24 - log_radius});
-  traits_ = {log_one,       log_step - log_radius, log_of(normal_[0]) - log_one,
+  traits_ = {log_one,       log_step - log_radius, log_of(shift_.normal()[0]) - log_one,
              around.normal, around.tangent,        (around_ ? 0 : log_one)};
   const auto size = [&](const Traits& fit) {
     return static_cast<int>(std::clamp<std::int64_t>(log_radius + fit.predict(traits_), 16, 16 * 20));
@@ -125,7 +99,11 @@ bool MoveCoder::code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index
   if (!is_on_grid(position, grid_bits_)) return false;
   went_[vertex] = position * 16 - start;
   misses_[vertex] = miss_of(position * 16 - point, ring_);
-  learn(went_[vertex], *misses_[vertex]);
+  shift_.learn(went_[vertex], ring_);
+  normal_size_.add(traits_, misses_[vertex]->normal);
+  normal_size_.end_sample();
+  tangent_size_.add(traits_, misses_[vertex]->tangent);
+  tangent_size_.end_sample();
   return true;
 }
 

@@ -15,6 +15,7 @@
 #include "codec/online_fit.h"
 #include "codec/patch_mesh.h"
 #include "codec/ring.h"
+#include "codec/shift_fit.h"
 
 namespace lodestone::detail {
 
@@ -34,18 +35,16 @@ class MoveCoder {
  private:
   static constexpr int kPulls = 4;
   static constexpr int kTraits = 6;
-  using Pulls = OnlineFit<kPulls>;
   using Traits = OnlineFit<kTraits>;
 
   bool find_star(const PatchMesh& mesh, Index half);
   void find_misses();
-  void learn(const Vec3i& went, const Miss& miss);
 
   int grid_bits_;
   int from_ = 0, to_ = 0;
   CoordinateCoder coordinates_;
   NumberCoder bare_;  // of vertices without faces
-  Pulls normal_pulls_, tangent_pulls_;
+  ShiftFit<kPulls> shift_;
   Traits normal_size_, tangent_size_;
   std::vector<std::optional<Miss>> misses_;  // by vertex that has moved, over the ring's radius
   std::vector<Vec3i> went_;                  // by vertex: how far, sixteenths
@@ -56,8 +55,6 @@ class MoveCoder {
   Ring ring_;
   std::optional<Miss> around_;
   Vec3i went_around_;  // mean of those that have moved
-  Pulls::Features normal_{};
-  std::array<Pulls::Features, 3> tangent_{};
   Traits::Features traits_{};
 };
 

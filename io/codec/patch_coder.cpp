@@ -25,7 +25,6 @@ constexpr std::uint32_t kSizes = 24;
 constexpr std::uint32_t kRatios = 16;
 constexpr std::uint32_t kShapes = 12;
 constexpr std::uint32_t kDegrees = 20;
-constexpr std::uint32_t kEnds = 24;
 constexpr std::uint32_t kFlats = 8;
 constexpr std::uint32_t kFaceSeams = 3;  // of a face's edges
 constexpr std::uint32_t kSeams = 6;      // whether an edge is one, how many the patch has crossed
@@ -37,10 +36,10 @@ constexpr std::array<std::uint32_t, 7> kFaceContexts = {kFaceSeams * kStates * k
                                                         kAges* kDegrees * 4,
                                                         kFlats* kFlats* kSizes / 3,
                                                         4 * 5 * kRatios* kAges};
-constexpr std::array<std::uint32_t, 9> kEdgeContexts = {
-    kCorners * kRatios * kPairs, kRatios* kRatios,           kCorners* kEnds * 3,
-    kSeams* kCorners* kSizes,    kRatios* kAges* kAges * 4,  kRatios* kFlats* kCorners,
-    kCorners* kRatios* kRatios,  kCorners* kDegrees * 3 * 3, kSeams* kRatios* kRatios* kPairs};
+constexpr std::array<std::uint32_t, 8> kEdgeContexts = {kCorners * kRatios * kPairs, kRatios* kRatios,
+                                                        kSeams* kCorners* kSizes,    kRatios* kAges* kAges * 4,
+                                                        kRatios* kFlats* kCorners,   kCorners* kRatios* kRatios,
+                                                        kCorners* kDegrees * 3 * 3,  kSeams* kRatios* kRatios* kPairs};
 
 enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 
@@ -166,12 +165,12 @@ bool PatchCoder::code_face(BitCoder& coder, Index face, bool begins) {
   return faces_.code(coder, begins ? 1 : 0, contexts, seams * kStates + state) != 0;
 }
 
-bool PatchCoder::code_edge(BitCoder& coder, Index half, bool goes_on) {
-  const Index twin = mesh_->twin(half), face = face_of_corner(half), beyond = face_of_corner(twin);
+/// `i`: in the polygon.
+bool PatchCoder::code_edge(BitCoder& coder, std::size_t i, bool goes_on) {
+  const Index half = polygon_[i], twin = mesh_->twin(half), face = face_of_corner(half), beyond = face_of_corner(twin);
   std::uint32_t plain = 0, patched = 0;
   const int length = edge_log(half);
-  int lengths = -length;
-  for (const Index h : polygon_) lengths += edge_log(h);
+  int lengths = lengths_ - length;
   for (const Index h : {next_corner(twin), previous_corner(twin)}) {
     plain += state_of(h) == kPlain ? 1 : 0;
     patched += state_of(h) == kPatch ? 1 : 0;
@@ -185,22 +184,22 @@ bool PatchCoder::code_edge(BitCoder& coder, Index half, bool goes_on) {
   const int across = log2_16(squared(positions_[mesh_->apex(half)] - positions_[apex]));
   const std::uint32_t flip = bucket(across - length, -40, 5, kRatios);
   // The edge as seen from the polygon's middle, and how far beyond it the patch would reach.
-  const Vec3i from = positions_[mesh_->from(half)] * 16 - centre_, to = positions_[mesh_->to(half)] * 16 - centre_;
-  const std::int64_t sides = std::int64_t{square_root(squared(from))} * square_root(squared(to)) + 1;
-  const std::uint32_t angle = bucket(static_cast<int>(dot(from, to) * 64 / sides), -64, 8, kRatios);
-  const int reach = log2_16(squared(positions_[apex] * 16 - centre_)) / 2;
-  const std::uint32_t far = bucket(reach - log2_16(static_cast<std::uint64_t>(radius_)), -16, 3, kRatios);
+  const std::size_t next = i + 1 < polygon_.size() ? i + 1 : 0;
+  const std::int64_t along = dot(radii_[i], radii_[next]);
+  const int log_cosine =
+      log2_16(static_cast<std::uint64_t>(std::abs(along))) - (radius_logs_[i] + radius_logs_[next]) / 2;
+  const auto cosine = static_cast<int>(exp2_16(std::min(log_cosine, 0) + 16 * 6));
+  const std::uint32_t angle = bucket(along < 0 ? -cosine : cosine, -64, 8, kRatios);
+  const int reach = log2_16(squared(positions_[apex] * 16 - centre_));
+  const std::uint32_t far = bucket((reach - mean_radius_log_) / 2, -16, 3, kRatios);
   const Around &a = around_[mesh_->from(half)], &b = around_[mesh_->to(half)], &c = around_[apex];
   const std::uint32_t balance =
       bucket(a.degree + b.degree - c.degree - around_[mesh_->apex(half)].degree, -8, 1, kDegrees);
-  const auto degree = [&](Index vertex) { return static_cast<int>(std::min<Index>(mesh_->degree(vertex), 64)); };
-  const std::uint32_t ends = bucket(degree(mesh_->from(half)) + degree(mesh_->to(half)), 6, 1, kEnds);
   const std::uint32_t same = mesh_->made_in(face) == mesh_->made_in(beyond) ? 1 : 0;
   const auto at_most_two = [](std::int32_t x) { return static_cast<std::uint32_t>(std::min(x, 2)); };
   const std::uint32_t contexts[] = {
       (corners * kRatios + relative) * kPairs + pair,
       relative * kRatios + flip,
-      (corners * kEnds + ends) * 3 + bucket(degree(apex), 3, 2, 3),
       (seam * kCorners + corners) * kSizes + size_of(beyond),
       ((relative * kAges + age(face)) * kAges + age(beyond)) * 4 + same * 2 + (face == patch_faces_.front() ? 1 : 0),
       (flip * kFlats + flatness(half)) * kCorners + corners,
@@ -224,13 +223,16 @@ void PatchCoder::decide(Index face, State state) {
 }
 
 void PatchCoder::measure_polygon() {
-  Vec3i sum;
-  for (const Index h : polygon_) sum = sum + positions_[mesh_->from(h)];
   const auto count = static_cast<std::int64_t>(polygon_.size());
-  centre_ = divide(sum * 16, count);
-  std::int64_t radii = 0;
-  for (const Index h : polygon_) radii += square_root(squared(positions_[mesh_->from(h)] * 16 - centre_));
-  radius_ = radii / count + 1;
+  centre_ = divide(sum_ * 16, count);
+  radii_.clear();
+  radius_logs_.clear();
+  int logs = 0;
+  for (const Index h : polygon_) {
+    const Vec3i& radius = radii_.emplace_back(positions_[mesh_->from(h)] * 16 - centre_);
+    logs += radius_logs_.emplace_back(log2_16(squared(radius)));
+  }
+  mean_radius_log_ = logs / static_cast<int>(count);
 }
 
 bool PatchCoder::has_corner(Index vertex) const {
@@ -243,6 +245,12 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
   polygon_.assign({3 * seed, 3 * seed + 1, 3 * seed + 2});
   patch_faces_.assign(1, seed);
   decide(seed, kPatch);
+  sum_ = {};
+  lengths_ = 0;
+  for (const Index h : polygon_) {
+    sum_ = sum_ + positions_[mesh_->from(h)];
+    lengths_ += edge_log(h);
+  }
   measure_polygon();
   crossed_ = 0;
   std::size_t closing = kNoIndex;
@@ -260,7 +268,7 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
     // Corners of a ring are different vertices, and edges are asked for once.
     const bool may_go_on = state_[beyond] == kOpen && decided_[half] == 0 && polygon_.size() < kMostPatchCorners &&
                            !has_corner(mesh_->apex(twin));
-    if (!may_go_on || !code_edge(coder, half, plan != nullptr && plan->patch_of[beyond] == patch)) {
+    if (!may_go_on || !code_edge(coder, i, plan != nullptr && plan->patch_of[beyond] == patch)) {
       decided_[twin] = 1;
       ++i;
       continue;
@@ -268,6 +276,8 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
     decide(beyond, kPatch);
     crossed_ += is_seam(half) ? 1 : 0;
     patch_faces_.push_back(beyond);
+    sum_ = sum_ + positions_[mesh_->apex(twin)];
+    lengths_ += edge_log(next_corner(twin)) + edge_log(previous_corner(twin)) - edge_log(half);
     polygon_[i] = next_corner(twin);
     polygon_.insert(polygon_.begin() + static_cast<std::ptrdiff_t>(i) + 1, previous_corner(twin));
     measure_polygon();

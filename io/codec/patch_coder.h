@@ -65,7 +65,7 @@ class PatchCoder {
   void end_patch(std::size_t closing, RoundPatches& patches);
   void code_ears(BitCoder& coder, const PatchPlan* plan, RoundPatches& patches);
   bool code_face(BitCoder& coder, Index face, bool begins);
-  bool code_edge(BitCoder& coder, Index half, bool goes_on);
+  bool code_edge(BitCoder& coder, std::size_t i, bool goes_on);
   bool code_border(BitCoder& coder, std::uint32_t what, bool yes);
 
   void decide(Index face, State state);
@@ -102,9 +102,13 @@ class PatchCoder {
   // Of the patch at hand.
   std::vector<Index> polygon_;
   std::vector<Index> patch_faces_;
-  std::uint32_t crossed_ = 0;  // seams
-  Vec3i centre_;               // sixteenths
-  std::int64_t radius_ = 1;
+  std::uint32_t crossed_ = 0;     // seams
+  Vec3i sum_;                     // of its corners
+  int lengths_ = 0;               // of its edges: logarithms
+  Vec3i centre_;                  // sixteenths
+  std::vector<Vec3i> radii_;      // from there to its corners
+  std::vector<int> radius_logs_;  // squared
+  int mean_radius_log_ = 0;
 };
 
 }  // namespace lodestone::detail

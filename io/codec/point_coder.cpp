@@ -24,8 +24,7 @@ constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
 
 PointCoder::PointCoder(int grid_bits)
     : grid_bits_(grid_bits),
-      normal_pulls_(kSizes, Pulls({-600, 0, 0, 1200}, 1 << 17)),
-      tangent_pulls_(kSizes, Pulls({-800, 0, 0, 0}, 1 << 17)),
+      shifts_(kSizes, ShiftFit<Ring::kPulls>({-600, 0, 0, 1200}, {-800, 0, 0, 0}, 1 << 17)),
       normal_size_({0, kHalf, kQuarter, kQuarter}, 1 << 14),
       tangent_size_({0, kHalf, 0, kHalf}, 1 << 14) {}
 
@@ -87,32 +86,22 @@ void PointCoder::find_misses() {
 }
 
 void PointCoder::predict(bool closed) {
-  const Vec3i& n = ring_.normal;
-  for (std::size_t i = 0; i < Ring::kPulls; ++i) {
-    const Vec3i pull = over_radius(ring_.pulls[i], ring_);
-    prediction_.normal[i] = along(pull, n);
-    const Vec3i rest = pull - times(n, prediction_.normal[i]);
-    for (int c = 0; c < 3; ++c) prediction_.tangent[static_cast<std::size_t>(c)][i] = rest[c];
-  }
-  const std::size_t size = size_class(closed);
-  Vec3i shift = times(n, normal_pulls_[size].predict(prediction_.normal));
-  for (int c = 0; c < 3; ++c)
-    shift[c] += tangent_pulls_[size].predict(prediction_.tangent[static_cast<std::size_t>(c)]);
-  const std::int64_t r = ring_.radius;
-  prediction_.point = ring_.mean + shift * r / kRadius;
+  ShiftFit<Ring::kPulls>& shift = shifts_[size_class(closed)];
+  prediction_.point = ring_.mean + shift.predict(ring_.pulls, ring_);
+  predict_size(shift);
 }
 
-void PointCoder::predict_size() {
+void PointCoder::predict_size(const ShiftFit<Ring::kPulls>& shift) {
   const auto across = [&](std::size_t pull) {
     std::int64_t sum = 0;
-    for (const Pulls::Features& coordinate : prediction_.tangent) sum += std::abs(coordinate[pull]);
+    for (const auto& coordinate : shift.tangent()) sum += std::abs(coordinate[pull]);
     return sum;
   };
   const int log_one = 64;
   const int log_radius = log2_16(static_cast<std::uint64_t>(ring_.radius));
   prediction_.normal_traits = {log_one,
                                around_.normal,
-                               log_of(prediction_.normal[0]) - log_one,
+                               log_of(shift.normal()[0]) - log_one,
                                around_.tangent,
                                log_one - log_radius,  // a step of the grid
                                log_of(across(0)) - log_one,
@@ -120,7 +109,7 @@ void PointCoder::predict_size() {
                                ring_.log_edge - log_radius,
                                ring_.log_beyond - log_radius};
   prediction_.tangent_traits = prediction_.normal_traits;
-  prediction_.tangent_traits[2] = log_of(across(2) + std::abs(prediction_.normal[2])) - log_one;
+  prediction_.tangent_traits[2] = log_of(across(2) + std::abs(shift.normal()[2])) - log_one;
   const auto size = [&](const Traits& fit, const Traits::Features& traits) {
     return static_cast<int>(std::clamp<std::int64_t>(log_radius + fit.predict(traits), 16, 16 * 20));
   };
@@ -128,22 +117,13 @@ void PointCoder::predict_size() {
 }
 
 void PointCoder::learn(const Vec3i& position, bool closed) {
-  const Vec3i& n = ring_.normal;
-  const Vec3i shift = over_radius(position * 16 - ring_.mean, ring_);
-  const std::int64_t lift = along(shift, n);
-  const Vec3i slide = shift - times(n, lift);
-  const std::size_t size = size_class(closed);
-  normal_pulls_[size].add(prediction_.normal, lift);
-  normal_pulls_[size].end_sample();
-  for (int c = 0; c < 3; ++c) tangent_pulls_[size].add(prediction_.tangent[static_cast<std::size_t>(c)], slide[c]);
-  tangent_pulls_[size].end_sample();
-
+  shifts_[size_class(closed)].learn(position * 16 - ring_.mean, ring_);
   const Miss miss = miss_of(position * 16 - prediction_.point, ring_);
+  misses_.push_back(miss);
   normal_size_.add(prediction_.normal_traits, miss.normal);
   normal_size_.end_sample();
   tangent_size_.add(prediction_.tangent_traits, miss.tangent);
   tangent_size_.end_sample();
-  misses_.push_back(miss);
 }
 
 bool PointCoder::code(BitCoder& coder, const PatchMesh& mesh, std::span<const Index> star, bool closed,
@@ -153,7 +133,6 @@ bool PointCoder::code(BitCoder& coder, const PatchMesh& mesh, std::span<const In
   ring_.look(mesh, outer_, closed, positions, normals_);
   find_misses();
   predict(closed);
-  predict_size();
   CoordinateCoder::Expected expected = {prediction_.point, prediction_.size, std::clamp(ring_.size() - 3, 0, 3), {}};
   if (has_misses_) expected.around = around_;
   coordinates_.code(coder, ring_, expected, shift_, position);

@@ -14,6 +14,7 @@
 #include "codec/online_fit.h"
 #include "codec/patch_mesh.h"
 #include "codec/ring.h"
+#include "codec/shift_fit.h"
 
 namespace lodestone::detail {
 
@@ -45,20 +46,17 @@ class PointCoder {
  private:
   static constexpr int kSizes = 4;   // of rings, told apart where positions are predicted
   static constexpr int kTraits = 9;  // of a ring, from which the size of errors is predicted
-  using Pulls = OnlineFit<Ring::kPulls>;
   using Traits = OnlineFit<kTraits>;
 
   struct Prediction {
     Vec3i point;
     Miss size;  // expected, sixteenths of the logarithm in sixteenths of a step
-    Pulls::Features normal{};
-    std::array<Pulls::Features, 3> tangent{};  // by coordinate
     Traits::Features normal_traits{}, tangent_traits{};
   };
 
   void find_misses();
   void predict(bool closed);
-  void predict_size();
+  void predict_size(const ShiftFit<Ring::kPulls>& shift);
   void learn(const Vec3i& position, bool closed);
   std::size_t size_class(bool closed) const;
 
@@ -67,7 +65,7 @@ class PointCoder {
   NumberCoder base_;
   NumberCoder loose_;
   CoordinateCoder coordinates_;
-  std::vector<Pulls> normal_pulls_, tangent_pulls_;  // by class of ring size
+  std::vector<ShiftFit<Ring::kPulls>> shifts_;  // by class of ring size
   Traits normal_size_, tangent_size_;
 
   std::vector<Vec3i> normals_;  // by vertex of the level before the round

@@ -1,6 +1,7 @@
 #include "codec/ring.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 
 namespace lodestone::detail {
@@ -14,8 +15,7 @@ Vec3i unit(Vec3i v) {
   shorten(v, 24);
   const std::int64_t length = square_root(squared(v));
   if (length == 0) return {};
-  constexpr std::int64_t kOne = std::int64_t{1} << kUnitBits;
-  return v * kOne / length;
+  return scaled(v, (std::int64_t{1} << (kUnitBits + kScaleBits)) / length);
 }
 
 void Ring::look(const PatchMesh& mesh, std::span<const Index> outer, bool closed, std::span<const Vec3i> positions,
@@ -53,6 +53,7 @@ void Ring::find_mean(std::span<const Index> outer, bool closed) {
     least = std::min(least, square);
   }
   radius = std::max<std::int64_t>(kLeastRadius, square_root(squares / outer.size()));
+  over_radius = (std::int64_t{1} << (kRadiusBits + kScaleBits)) / radius;
   log_least = log2_16(least) / 2;
 }
 
@@ -99,12 +100,13 @@ void Ring::find_spread() {
       for (int j = 0; j <= i; ++j) sums[i][j] += across[i] * across[j] >> 4;
   }
   std::int64_t trace = (sums[0][0] + sums[1][1] + sums[2][2]) / 2 + 1;
-  int shift = 0;
-  while (trace >> shift >= (std::int64_t{1} << 37)) ++shift;  // no entry is more than twice that
+  const int shift = std::max(0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(trace))) - 36);
+  // No entry is more than twice the trace.
   trace = std::max<std::int64_t>(trace >> shift, 1);
+  const int bits = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(trace)));
+  const std::int64_t over_trace = (std::int64_t{1} << (bits + kRatioBits)) / trace;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j <= i; ++j)
-      spread[i][j] = spread[j][i] = (sums[i][j] >> shift) * (std::int64_t{1} << kRatioBits) / trace;
+    for (int j = 0; j <= i; ++j) spread[i][j] = spread[j][i] = (sums[i][j] >> shift) * over_trace >> bits;
 }
 
 }  // namespace lodestone::detail

@@ -14,7 +14,15 @@ namespace lodestone::detail {
 
 inline constexpr int kUnitBits = 14;   ///< fractional bits of unit vectors
 inline constexpr int kRatioBits = 24;  ///< fractional bits of ratios of variances
+inline constexpr int kScaleBits = 24;  ///< fractional bits of scales
 
+/// What a length comes to where a ring's radius is this.
+inline constexpr int kRadiusBits = 8;
+
+/// Returns a vector times a scale, kScaleBits.
+inline Vec3i scaled(const Vec3i& v, std::int64_t scale) {
+  return {v.x * scale >> kScaleBits, v.y * scale >> kScaleBits, v.z * scale >> kScaleBits};
+}
 /// Returns a vector of length 1, or the zero vector for itself.
 Vec3i unit(Vec3i v);
 /// Finds the unit normals of `count` vertices or wedges, the mean of the faces around by area; `left` says which of
@@ -52,9 +60,10 @@ class Ring {
   std::span<const Index> beyond() const { return beyond_; }
   int size() const { return static_cast<int>(corners_.size()); }
 
-  Vec3i mean;               ///< of the corners; where the ring is open, of its ends
-  Vec3i normal;             ///< unit; 0 where it has none
-  std::int64_t radius = 0;  ///< ≥ 16
+  Vec3i mean;                    ///< of the corners; where the ring is open, of its ends
+  Vec3i normal;                  ///< unit; 0 where it has none
+  std::int64_t radius = 0;       ///< ≥ 16
+  std::int64_t over_radius = 0;  ///< kRadius over it, kScaleBits
   /// Where else the vertex may lie, seen from the mean: the mean of the vertices beyond; of the edges, the longer the
   /// more; of the corners of parallelograms, the smaller the more; of the corners' tangent planes.
   std::array<Vec3i, kPulls> pulls;
