@@ -82,7 +82,6 @@ Result<void> check_stream_file(const BuildCommand& command) {
   const std::array given = {Given{command.per_mesh, "--per-mesh", "a .lods is one mesh"},
                             Given{command.profile != "msft-lod", "--profile", "a .lods is one file"},
                             Given{command.no_stream, "--no-stream", "a .lods is a stream"},
-                            Given{command.lossless, "--lossless", "a .lods is rounded to grids"},
                             Given{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
                             Given{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}};
   for (const Given& option : given)
@@ -113,8 +112,6 @@ Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
     if (given->size() > 1 || options.level_count)
       return fail(ErrorCode::InvalidArgument, "--profile stream shows one level: give one target, and no --levels");
     if (options.no_stream) return fail(ErrorCode::InvalidArgument, "--no-stream: --profile stream is a stream");
-    if (options.lossless)
-      return fail(ErrorCode::InvalidArgument, "--lossless: streams of --profile stream are rounded to grids");
     return given->empty() ? ratio_targets(kShownRatio, 1) : given;
   }
   if (writes_stream_file(options)) {

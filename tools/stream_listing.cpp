@@ -46,7 +46,8 @@ constexpr std::array kParts = {
     PartName{"header", &CompactSizes::header},       PartName{"base", &CompactSizes::base},
     PartName{"places", &CompactSizes::places},       PartName{"wedges", &CompactSizes::wedges},
     PartName{"positions", &CompactSizes::positions}, PartName{"moves", &CompactSizes::moves},
-    PartName{"loose", &CompactSizes::loose},         PartName{"errors", &CompactSizes::errors}};
+    PartName{"loose", &CompactSizes::loose},         PartName{"rests", &CompactSizes::rests},
+    PartName{"errors", &CompactSizes::errors}};
 
 /// The names of parts: those that every stream has, then attributes.
 std::vector<std::string> part_names(const CompactParts& parts) {

@@ -41,8 +41,9 @@ void find_grid(const std::vector<float>& values, AttributeSpec& spec) {
     range = std::max(range, static_cast<double>(high[c]) - static_cast<double>(spec.low[c]));
   }
   // Rounded up, so that the largest value is within; less where that would go beyond what floats can say.
-  spec.range = static_cast<float>(std::min(range, static_cast<double>(std::numeric_limits<float>::max())));
-  if (static_cast<double>(spec.range) < range) spec.range = std::nextafter(spec.range, HUGE_VALF);
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  spec.range = static_cast<float>(std::min(range, static_cast<double>(kLargest)));
+  if (static_cast<double>(spec.range) < range) spec.range = std::nextafter(spec.range, kLargest);
   for (const float low : spec.low)
     while (!std::isfinite(low + spec.range)) spec.range *= 0.5F;
 }

@@ -24,7 +24,9 @@ CompactDecoder::CompactDecoder(CompactHeader header, ProgressiveMesh& mesh, std:
     : header_(std::move(header)),
       levels_(limits_of(header_), header_.attributes),
       mesh_(mesh),
-      most_bytes_(most_bytes) {}
+      most_bytes_(most_bytes) {
+  if (header_.lossless) rests_.emplace(static_cast<float>(header_.step()), header_.attributes);
+}
 
 void CompactDecoder::count_rounds(std::vector<CompactRound>& rounds) {
   rounds_ = &rounds;
@@ -75,18 +77,6 @@ Result<void> CompactDecoder::read_errors(BitCoder& coder) {
   return {};
 }
 
-Vec3f CompactDecoder::place(const Vec3i& position) const {
-  const auto on_axis = [&](std::int64_t steps, float origin) {
-    const double top = static_cast<double>((1 << header_.grid_bits) - 1);
-    return static_cast<float>(static_cast<double>(origin) +
-                              static_cast<double>(steps) * static_cast<double>(header_.grid.range) / top);
-  };
-  const Vec3f& origin = header_.grid.origin;
-  return {on_axis(position.x, origin.x), on_axis(position.y, origin.y), on_axis(position.z, origin.z)};
-}
-
-void CompactDecoder::add_position(const Vec3i& position) { mesh_.positions.push_back(place(position)); }
-
 /// Adds where vertices go in a round whose records are there.
 void CompactDecoder::add_moves() {
   if (levels_.moves().empty() && mesh_.move_begin.empty()) return;
@@ -102,25 +92,33 @@ void CompactDecoder::add_moves() {
   auto at = moves.begin();
   for (std::size_t record = first; record < mesh_.record_count(); ++record) {
     for (; at != moves.end() && record_of(*at) == record; ++at)
-      mesh_.moves.push_back({at->vertex, place(at->from), place(at->to)});
+      mesh_.moves.push_back({at->vertex, header_.place(at->from), header_.place(at->to)});
     mesh_.move_begin.push_back(static_cast<Index>(mesh_.moves.size()));
   }
 }
 
-/// Adds what the attributes of the newest wedges are.
-void CompactDecoder::add_attributes() {
+/// Adds the positions of the newest vertices and the attributes of the newest wedges.
+Result<void> CompactDecoder::add_values(BitCoder& coder) {
+  for (std::size_t v = mesh_.positions.size(); v < levels_.positions().size(); ++v) {
+    Vec3f& position = mesh_.positions.emplace_back(header_.place(levels_.positions()[v]));
+    if (rests_ && !rests_->code_position(coder, {}, position)) return broken("a position is no number");
+  }
   for (std::size_t a = 0; a < mesh_.attributes.size(); ++a) {
     const ElementCoder& coded = levels_.attributes().attribute(a);
+    const std::size_t size = mesh_.attributes[a].element_bytes();
     std::vector<std::byte>& data = mesh_.attributes[a].data;
-    for (auto w = static_cast<Index>(data.size() / mesh_.attributes[a].element_bytes()); w < levels_.wedges().size();
-         ++w)
+    for (auto w = static_cast<Index>(data.size() / size); w < levels_.wedges().size(); ++w) {
       append_element(coded.spec(), coded.numbers(w), data);
+      if (rests_ && !rests_->code_element(coder, a, {}, std::span(data).last(size)))
+        return broken("an attribute is no float");
+    }
   }
+  spend(coder, &CompactSizes::rests);
+  return {};
 }
 
-void CompactDecoder::begin_mesh(const BaseMesh& base) {
+void CompactDecoder::begin_mesh() {
   const PatchMesh& level = levels_.mesh();
-  for (const Vec3i& position : base.positions) add_position(position);
   for (Index w = 0; w < levels_.wedges().size(); ++w) mesh_.wedge_vertex.push_back(levels_.wedges().vertex(w));
   mesh_.base_vertex_count = header_.base_vertex_count;
   mesh_.base_wedge_count = header_.base_wedge_count;
@@ -133,7 +131,6 @@ void CompactDecoder::begin_mesh(const BaseMesh& base) {
   }
   for (const AttributeSpec& spec : header_.attributes)
     mesh_.attributes.push_back({spec.name, spec.type, spec.component_count, spec.normalized, {}});
-  add_attributes();
   mesh_.record_wedge_begin.push_back(mesh_.base_wedge_count);
   mesh_.sector_begin.push_back(0);
   mesh_.polygon_begin.push_back(0);
@@ -163,6 +160,7 @@ Result<void> CompactDecoder::read_base(BitCoder& coder) {
     base.groups.insert(base.groups.end(), header_.groups[g].base_face_count, g);
   int step = 0;
   if (!levels_.code_step(coder, step)) return broken("its grid is too coarse");
+  if (header_.lossless && step != 0) return broken("lossless, it begins on a coarser grid");
   if (!levels_.code_base(coder, base)) return broken("base mesh is none");
   if (levels_.wedges().size() != header_.base_wedge_count)
     return broken(
@@ -170,10 +168,11 @@ Result<void> CompactDecoder::read_base(BitCoder& coder) {
   spend(coder, &CompactSizes::base);
   if (!levels_.code_base_attributes(coder, {})) return broken("an attribute of the base mesh is out of its range");
   pass_attributes(coder);
+  begin_mesh();
+  LODESTONE_CHECK(add_values(coder));
   mesh_.deviation.push_back(0);
   mesh_.curvature_error.push_back(0);
   LODESTONE_CHECK(read_errors(coder));
-  begin_mesh(base);
   end_round();
   return check_held_bytes(mesh_, most_bytes_);
 }
@@ -197,7 +196,7 @@ void CompactDecoder::add_record(std::size_t i) {
   const SectorList& sectors = levels_.sectors();
   const std::vector<Index>& ends = levels_.vertices().sector_end;
   const Index begin = i == 0 ? 0 : ends[i - 1];
-  const auto vertex = static_cast<Index>(mesh_.positions.size());
+  const auto vertex = mesh_.base_vertex_count + static_cast<Index>(mesh_.record_count());
   freed_.clear();
   for (Index s = begin; s < ends[i]; ++s) add_sector(s);
   mesh_.slots.insert(mesh_.slots.end(), freed_.begin(), freed_.end());
@@ -216,7 +215,6 @@ void CompactDecoder::add_record(std::size_t i) {
   // Up to its end, all of a round has the errors that it begins with, or that its stage does.
   mesh_.deviation.push_back(header_.deviation.value(within_code_));
   mesh_.curvature_error.push_back(mesh_.curvature_error.back());
-  add_position(levels_.positions()[vertex]);
 }
 
 Result<void> CompactDecoder::read_round(BitCoder& coder) {
@@ -243,12 +241,13 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
   spend(coder, &CompactSizes::loose);
   if (!levels_.code_attributes(coder, {})) return broken("an attribute is out of its range");
   pass_attributes(coder);
+  LODESTONE_CHECK(add_values(coder));
   if (!levels_.code_stage_end(coder, stage_ends_, {})) return broken("a vertex moves off the grid");
+  if (header_.lossless && stage_ends_) return broken("lossless, it has placed levels");
   if (int step = 0; stage_ends_ && !levels_.code_step(coder, step)) return broken("its grid is too coarse");
   spend(coder, &CompactSizes::moves);
   for (std::size_t i = 0; i < levels_.vertices().count(); ++i) add_record(i);
   add_moves();
-  add_attributes();
   mesh_.round_begin.push_back(static_cast<Index>(mesh_.record_count()));
   LODESTONE_CHECK(check_held_bytes(mesh_, most_bytes_));
   LODESTONE_CHECK(read_errors(coder));

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "codec/bit_coder.h"
 #include "codec/compact_layout.h"
 #include "codec/level_coder.h"
+#include "codec/rest_coder.h"
 #include "stream/growing_mesh.h"
 
 namespace lodestone::detail {
@@ -47,11 +49,9 @@ class CompactDecoder {
   void spend(const BitCoder& coder, double CompactSizes::*part);
   void pass_attributes(const BitCoder& coder);
   void end_round();
-  Vec3f place(const Vec3i& position) const;
-  void add_position(const Vec3i& position);
   void add_moves();
-  void add_attributes();
-  void begin_mesh(const BaseMesh& base);
+  Result<void> add_values(BitCoder& coder);
+  void begin_mesh();
   void add_record(std::size_t i);
   void add_sector(std::size_t s);
 
@@ -59,7 +59,8 @@ class CompactDecoder {
   std::size_t chunk_count_ = 0;
   LevelCoder levels_;
   ErrorCoder errors_;
-  std::uint64_t walked_ = 0;  // by rounds, see LevelCoder::size
+  std::optional<RestCoder> rests_;  // of a lossless stream
+  std::uint64_t walked_ = 0;        // by rounds, see LevelCoder::size
   std::uint64_t most_walked_ = 0;
   int deviation_code_ = 0;
   int within_code_ = 0;             // of levels within the round that comes next

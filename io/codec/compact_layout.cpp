@@ -155,6 +155,9 @@ Result<void> read_attributes(HeaderReader& in, CompactHeader& header) {
 
 Result<void> read_fields(HeaderReader& in, CompactHeader& header) {
   header.grid_bits = in.get<std::uint8_t>();
+  const auto lossless = in.get<std::uint8_t>();
+  if (lossless > 1) return broken(text("lossless is ", int{lossless}), in.at());
+  header.lossless = lossless != 0;
   for (float* value : {&header.grid.origin.x, &header.grid.origin.y, &header.grid.origin.z, &header.grid.range})
     *value = in.get<float>();
   LODESTONE_CHECK(read_groups(in, header));
@@ -197,6 +200,19 @@ int ErrorScale::code(float error) const {
 }
 
 std::uint32_t checksum32(std::span<const std::byte> bytes) { return static_cast<std::uint32_t>(checksum64(bytes)); }
+
+double CompactHeader::step() const {
+  return static_cast<double>(grid.range) / static_cast<double>((1 << grid_bits) - 1);
+}
+
+Vec3f CompactHeader::place(const Vec3i& point) const {
+  const double top = static_cast<double>((1 << grid_bits) - 1);
+  const auto on_axis = [&](std::int64_t steps, float origin) {
+    return static_cast<float>(static_cast<double>(origin) +
+                              static_cast<double>(steps) * static_cast<double>(grid.range) / top);
+  };
+  return {on_axis(point.x, grid.origin.x), on_axis(point.y, grid.origin.y), on_axis(point.z, grid.origin.z)};
+}
 
 std::uint64_t CompactHeader::base_face_count() const {
   std::uint64_t count = 0;
@@ -270,6 +286,7 @@ std::vector<std::byte> write_compact_header(const CompactHeader& header) {
   append(out, kCompactMinor);
   append(out, std::uint32_t{0});
   append(out, static_cast<std::uint8_t>(header.grid_bits));
+  append(out, static_cast<std::uint8_t>(header.lossless ? 1 : 0));
   for (const float value : {header.grid.origin.x, header.grid.origin.y, header.grid.origin.z, header.grid.range})
     append(out, value);
   append_varint(out, header.groups.size());

@@ -65,6 +65,7 @@ struct CompactGroup {
 struct CompactHeader {
   std::uint32_t header_bytes = 0;  ///< up to the first chunk
   int grid_bits = 0;
+  bool lossless = false;  ///< see rest_coder.h
   CompactGrid grid;
   std::vector<CompactGroup> groups;
   std::vector<AttributeSpec> attributes;
@@ -74,6 +75,10 @@ struct CompactHeader {
   ErrorScale curvature;
   std::vector<CompactChunkEntry> chunks;
 
+  /// How far apart the grid's points lie on an axis, mesh units.
+  double step() const;
+  /// The position at a point of the grid.
+  Vec3f place(const Vec3i& point) const;
   std::uint64_t base_face_count() const;
   /// Of the full mesh.
   std::uint64_t face_count() const;

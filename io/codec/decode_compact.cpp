@@ -20,7 +20,7 @@ Result<std::vector<CompactChunk>> read_compact_chunks(std::span<const std::byte>
 
 double CompactSizes::sum() const {
   return std::accumulate(attributes.begin(), attributes.end(),
-                         header + base + places + positions + moves + wedges + loose + errors);
+                         header + base + places + positions + moves + wedges + loose + rests + errors);
 }
 
 namespace {
@@ -54,7 +54,7 @@ Result<ProgressiveMesh> decode(std::span<const std::byte> bytes, std::vector<Com
 
 void add(const CompactSizes& more, CompactSizes& sizes) {
   for (const auto part : {&CompactSizes::base, &CompactSizes::places, &CompactSizes::positions, &CompactSizes::moves,
-                          &CompactSizes::wedges, &CompactSizes::loose, &CompactSizes::errors})
+                          &CompactSizes::wedges, &CompactSizes::loose, &CompactSizes::rests, &CompactSizes::errors})
     sizes.*part += more.*part;
   for (std::size_t a = 0; a < sizes.attributes.size(); ++a) sizes.attributes[a] += more.attributes[a];
 }

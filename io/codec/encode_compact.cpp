@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <lodestone/core/detail/cancelled.h>
@@ -14,6 +15,7 @@
 #include "codec/attribute_rounding.h"
 #include "codec/compact_layout.h"
 #include "codec/level_coder.h"
+#include "codec/rest_coder.h"
 #include "codec/round_planner.h"
 #include "stream/stream_layout.h"
 
@@ -193,10 +195,12 @@ class CompactEncoder {
     coder_.set_listener(&listener_);
     levels_.count_attributes();
     header_.grid_bits = options.grid_bits;
+    header_.lossless = options.lossless;
     header_.grid = grid_of(mesh, options);
     header_.attributes = specs_;
     for (const FaceGroup& group : mesh.groups)
       header_.groups.push_back({group.material, static_cast<Index>(group.base_corners.size() / 3)});
+    if (options.lossless) rests_.emplace(static_cast<float>(header_.step()), specs_);
     numbers_ = rounded(mesh.attributes, specs_);
     deviation_ = largest_from(mesh.deviation);
     curvature_ = largest_from(mesh.curvature_error);
@@ -212,9 +216,6 @@ class CompactEncoder {
   Result<void> write_rounds();
   Vec3i grid_position(const Vec3f& position, int step) const;
   Vec3i grid_position(Index vertex) const;
-  double unit() const {
-    return static_cast<double>(header_.grid.range) / static_cast<double>((1 << header_.grid_bits) - 1);
-  }
   double rounding() const;
   void plan_stages();
   float widened(float deviation, double move) const;
@@ -237,6 +238,8 @@ class CompactEncoder {
   bool describe_loose(Index record, LooseRecord& loose);
   bool find_start(Index sector, LooseRecord::Sector& loose) const;
   bool write_attributes(bool of_base);
+  void write_rests();
+  void number_vertex(Index vertex);
   void add_extra(Index record);
   void write_errors(Index position);
   void end_chunk();
@@ -265,6 +268,7 @@ class CompactEncoder {
   EncodingListener listener_;
   CompactHeader header_;
   ErrorCoder errors_;
+  std::optional<RestCoder> rests_;  // of a lossless stream
   BitCoder coder_;
   double bits_at_ = 0;  // where the last part ended
   std::vector<std::byte> body_;
@@ -282,7 +286,8 @@ class CompactEncoder {
   std::vector<Index> joins_;         // by star
   WedgePlan wedge_plan_;
   std::vector<Index> new_wedges_;  // of the mesh, in the order of their numbers, that have no attributes yet
-  std::vector<Index> own_wedges_;  // of the vertex at hand, in the order of their numbers
+  std::vector<Index> rest_vertices_, rest_wedges_;  // the same, of which a lossless stream has no rests yet
+  std::vector<Index> own_wedges_;                   // of the vertex at hand, in the order of their numbers
 };
 
 Vec3i CompactEncoder::grid_position(const Vec3f& p, int step) const {
@@ -304,11 +309,11 @@ Vec3i CompactEncoder::grid_position(Index vertex) const {
 }
 
 /// How far rounding moves a point of the full mesh at most, mesh units.
-double CompactEncoder::rounding() const { return std::sqrt(3.0) / 2 * unit(); }
+double CompactEncoder::rounding() const { return header_.lossless ? 0 : std::sqrt(3.0) / 2 * header_.step(); }
 
 Vec3 CompactEncoder::place(const Vec3i& n) const {
   return Vec3(header_.grid.origin) +
-         Vec3{static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)} * unit();
+         Vec3{static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z)} * header_.step();
 }
 
 /// Finds how coarsely each stage rounds, and how far that and its level move vertices at most.
@@ -320,7 +325,7 @@ void CompactEncoder::plan_stages() {
     Stage& stage = stages_.emplace_back();
     stage.end = level.position;
     while (stage.step < header_.grid_bits - kLeastStepBits &&
-           std::ldexp(unit(), stage.step + 1) <= static_cast<double>(level.precision))
+           std::ldexp(header_.step(), stage.step + 1) <= static_cast<double>(level.precision))
       ++stage.step;
     double rounding = 0;
     for (std::size_t v = 0; v < level.positions.size(); ++v) {
@@ -393,9 +398,31 @@ bool CompactEncoder::write_attributes(bool of_base) {
                      numbers_[a].begin() + static_cast<std::ptrdiff_t>((wedge + 1) * size));
   }
   const bool is_done = of_base ? levels_.code_base_attributes(coder_, given) : levels_.code_attributes(coder_, given);
+  if (rests_) rest_wedges_.insert(rest_wedges_.end(), new_wedges_.begin(), new_wedges_.end());
   new_wedges_.clear();
   bits_at_ = coder_.bits();
   return is_done;
+}
+
+/// Writes what rounding took from the newest vertices and wedges, in a lossless stream.
+void CompactEncoder::write_rests() {
+  if (!rests_) return;
+  for (const Index vertex : rest_vertices_) {
+    Vec3f position = header_.place(levels_.positions()[coded_.vertex[vertex]]);
+    rests_->code_position(coder_, mesh_.positions[vertex], position);
+  }
+  std::vector<std::byte> element;
+  for (std::size_t a = 0; a < specs_.size(); ++a) {
+    const std::size_t size = mesh_.attributes[a].element_bytes();
+    for (const Index wedge : rest_wedges_) {
+      element.clear();
+      append_element(specs_[a], levels_.attributes().attribute(a).numbers(coded_.wedge[wedge]), element);
+      rests_->code_element(coder_, a, std::span(mesh_.attributes[a].data).subspan(wedge * size, size), element);
+    }
+  }
+  rest_vertices_.clear();
+  rest_wedges_.clear();
+  spend(result_.sizes.rests);
 }
 
 /// Numbers the wedges of base vertices, those of each together, faces' first.
@@ -422,13 +449,19 @@ void CompactEncoder::number_base_wedges(const std::vector<Index>& vertices, Base
     }
 }
 
+/// Numbers a vertex, the next to be coded.
+void CompactEncoder::number_vertex(Index vertex) {
+  coded_.vertex[vertex] = vertex_count_++;
+  if (rests_) rest_vertices_.push_back(vertex);
+}
+
 /// Numbers base vertices in the order in which faces use them; those without faces come last.
 BaseMesh CompactEncoder::number_base() {
   BaseMesh base;
   std::vector<Index> vertices;
   const auto number = [&](Index vertex) {
     if (coded_.vertex[vertex] != kNoIndex) return;
-    coded_.vertex[vertex] = vertex_count_++;
+    number_vertex(vertex);
     vertices.push_back(vertex);
   };
   for (Index g = 0; g < mesh_.groups.size(); ++g) {
@@ -485,6 +518,7 @@ Result<void> CompactEncoder::write_base() {
   if (!levels_.code_base(coder_, base)) return unsupported("base mesh names no wedges");
   spend(result_.sizes.base);
   if (!write_attributes(true)) return unsupported("attributes of the base mesh are out of their ranges");
+  write_rests();
   write_errors(0);
   return {};
 }
@@ -552,7 +586,7 @@ void CompactEncoder::plan_wedges() {
   wedge_plan_.extra.clear();
   for (std::size_t i = 0; i < vertices.count(); ++i) {
     const Index record = star_records_[vertices.stars_of(i).front()];
-    coded_.vertex[mesh_.base_vertex_count + record] = vertex_count_++;
+    number_vertex(mesh_.base_vertex_count + record);
     own_wedges_.clear();
     for (const Index star : vertices.stars_of(i)) plan_star(star, record);
     const std::size_t used = own_wedges_.size();
@@ -598,7 +632,7 @@ Result<void> CompactEncoder::write_loose(Index record) {
   const std::size_t used = own_wedges_.size();
   add_extra(record);
   vertex.extra = static_cast<Index>(own_wedges_.size() - used);
-  coded_.vertex[mesh_.base_vertex_count + record] = vertex_count_++;
+  number_vertex(mesh_.base_vertex_count + record);
   vertex.position = grid_position(mesh_.base_vertex_count + record);
   const std::size_t first_sector = levels_.sectors().sectors.size();
   if (!levels_.code_loose_vertex(coder_, vertex)) return wrong();
@@ -639,6 +673,7 @@ Result<void> CompactEncoder::write_round(Index first, Index end) {
   for (const Index record : planner_.loose()) LODESTONE_CHECK(write_loose(record));
   spend(result_.sizes.loose);
   if (!write_attributes(false)) return wrong();
+  write_rests();
   LODESTONE_CHECK(end_stage(end));
   write_errors(end);
   ++chunk_.round_count;
@@ -714,6 +749,7 @@ Result<CompactStream> encode_compact(const ProgressiveMesh& mesh, const CompactO
                                      std::span<const PlacedLevel> levels) {
   LODESTONE_CHECK(check_options(options));
   LODESTONE_CHECK(check_counts(mesh));
+  if (options.lossless && !levels.empty()) return wrong("levels of a lossless stream cannot be placed");
   LODESTONE_CHECK(check_levels(mesh, levels));
   LODESTONE_CHECK(check_grid(mesh, grid_of(mesh, options), options.grid_bits));
   return CompactEncoder(mesh, options, levels).run();

@@ -16,6 +16,7 @@
 #include "codec/attribute_coder.h"
 #include "codec/compact_decoder.h"
 #include "codec/compact_layout.h"
+#include "support/compact.h"
 #include "support/data.h"
 #include "support/mesh_properties.h"
 #include "support/random.h"
@@ -44,16 +45,6 @@ CompactStream encoded(const ProgressiveMesh& mesh, int grid_bits = 12) {
   INFO((stream ? std::string() : stream.error().message));
   REQUIRE(stream);
   return std::move(*stream);
-}
-
-ProgressiveMesh decoded(std::span<const std::byte> bytes) {
-  auto mesh = decode_compact(bytes);
-  INFO((mesh ? std::string() : mesh.error().message));
-  REQUIRE(mesh);
-  const auto valid = validate(*mesh);
-  INFO((valid ? std::string() : valid.error().message));
-  REQUIRE(valid);
-  return std::move(*mesh);
 }
 
 /// A level's faces by their group and wedges, numbered anew; each begins with its least.
@@ -714,7 +705,7 @@ TEST_CASE("a material is a number of 32 bits") {
   header.groups[0].material = kNoIndex;
   std::vector<std::byte> bytes = detail::write_compact_header(header);
   CHECK(read_compact_chunks(bytes));
-  constexpr std::size_t kLastOfMaterial = 16 + 17 + 1 + 4;  // behind the fixed part, the grid and the count
+  constexpr std::size_t kLastOfMaterial = 16 + 18 + 1 + 4;  // behind the fixed part, the grid and the count
   REQUIRE(bytes[kLastOfMaterial] == std::byte{0x0F});
   bytes[kLastOfMaterial] = std::byte{0x1F};
   const std::size_t covered = bytes.size() - sizeof(std::uint32_t);

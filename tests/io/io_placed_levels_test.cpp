@@ -10,6 +10,7 @@
 #include <lodestone/lod/place_levels.h>
 #include <lodestone/lod/simplify.h>
 
+#include "support/compact.h"
 #include "support/data.h"
 #include "support/fuzz_reader.h"
 #include "support/mesh_properties.h"
@@ -47,16 +48,6 @@ CompactStream encoded(const ProgressiveMesh& mesh, const std::vector<PlacedLevel
   INFO((stream ? std::string() : stream.error().message));
   REQUIRE(stream);
   return std::move(*stream);
-}
-
-ProgressiveMesh decoded(std::span<const std::byte> bytes) {
-  auto mesh = decode_compact(bytes);
-  INFO((mesh ? std::string() : mesh.error().message));
-  REQUIRE(mesh);
-  const auto valid = validate(*mesh);
-  INFO((valid ? std::string() : valid.error().message));
-  REQUIRE(valid);
-  return std::move(*mesh);
 }
 
 /// How far a point is outside of a box.

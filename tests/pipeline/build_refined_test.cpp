@@ -1,5 +1,6 @@
 // Files of one coarse level and a compact stream that refines it to the whole.
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -27,6 +28,13 @@ BuildOptions refined(double ratio = 0.1) {
   return options;
 }
 
+BuildOptions stream_alone() {
+  BuildOptions options;
+  options.layout = FileLayout::StreamAlone;
+  options.targets = ratio_targets(0.3, 1);
+  return options;
+}
+
 Scene scene_of(const TriangleSoup& soup) { return Scene::from_mesh({mesh_of(soup), {}, {}, {}, {}}, "shape").value(); }
 
 BuildResult built(const Scene& scene, const BuildOptions& options) {
@@ -43,6 +51,16 @@ std::vector<Asset::Stream> streams_of(const BuildResult& result) {
 
 Mesh refined_to_the_end(const std::vector<std::byte>& stream) {
   return extract_level(read_stream(stream).value(), kNoIndex);
+}
+
+/// Whether meshes have the same positions, bit for bit, in any order.
+bool has_floats_of(const Mesh& mesh, const Mesh& other) {
+  const auto sorted = [](const Mesh& of) {
+    std::multiset<std::array<float, 3>> positions;
+    for (const Vec3f& p : of.positions) positions.insert({p.x, p.y, p.z});
+    return positions;
+  };
+  return sorted(mesh) == sorted(other);
 }
 
 const std::vector<TriangleSoup>& shapes() {
@@ -91,8 +109,9 @@ TEST_CASE("a refined file shows one level, and its stream leads to the whole mes
   CHECK(off >= 5);  // flat ones are not
 }
 
-TEST_CASE("streams of files with all levels are compact, unless floats are kept or no grid is fine enough") {
-  const auto version = [](const Scene& scene, const BuildOptions& options) {
+TEST_CASE(
+    "streams of files with all levels are compact, and keep floats where that is asked for or no grid is fine enough") {
+  const auto keeps_floats = [](const Scene& scene, const BuildOptions& options) {
     const BuildResult result = built(scene, options);
     const std::vector<Asset::Stream> streams = streams_of(result);
     REQUIRE(streams.size() == 1);
@@ -101,37 +120,52 @@ TEST_CASE("streams of files with all levels are compact, unless floats are kept 
     CHECK(!extension.contains("deviation"));  // the mesh is the finest level
     const int major = stream_version(streams[0].bytes);
     CHECK(extension["version"] == std::to_string(major) + ".0");
+    CHECK(major == 3);
     const Mesh last = refined_to_the_end(streams[0].bytes);
     CHECK(last.face_count() == scene.meshes()[0].mesh.face_count());
-    return major;
+    return has_floats_of(scene.meshes()[0].mesh, last);
   };
   const Scene ball = scene_of(icosphere(3, 0.02, 7));
   BuildOptions usual;
-  CHECK(version(ball, usual) == 3);
+  CHECK(!keeps_floats(ball, usual));
   for (const int levels : {1, 2}) {  // a file of one level is one to build from, too
     usual.targets = ratio_targets(0.5, levels - 1);
-    CHECK(version(ball, usual) == 3);
+    CHECK(!keeps_floats(ball, usual));
     const auto again = Scene::read_bytes(built(ball, usual).files[0].glb, "glb");
     CHECK(again.has_value() == (levels == 1));
   }
   BuildOptions lossless = usual, plain = usual, fine = usual, coarse = usual, gridded = usual, close = usual;
   lossless.lossless = true;
-  CHECK(version(ball, lossless) == 2);
+  CHECK(keeps_floats(ball, lossless));
   plain.storage.compression = Compression::None;
-  CHECK(version(ball, plain) == 2);
+  CHECK(keeps_floats(ball, plain));
   fine.storage.position_bits = 17;
-  CHECK(version(ball, fine) == 2);
+  CHECK(keeps_floats(ball, fine));
   coarse.storage.position_bits = 6;
-  CHECK(version(ball, coarse) == 3);
+  CHECK(!keeps_floats(ball, coarse));
   gridded.storage.position_grid = PositionGrid{{}, 0.001F};
-  CHECK(version(ball, gridded) == 2);
+  CHECK(keeps_floats(ball, gridded));
   close.targets = {{TargetKind::Error, 1e-6, false, false}};
-  CHECK(version(ball, close) == 2);
+  CHECK(keeps_floats(ball, close));
 
   // A shape that is far longer than thick.
   TriangleSoup rod = icosphere(3, 0, 7);
   for (Vec3f& p : rod.positions) p = {p.x * 1000, p.y * 0.01F, p.z * 0.01F};
-  CHECK(version(scene_of(rod), usual) == 2);
+  CHECK(keeps_floats(scene_of(rod), usual));
+  for (const BuildOptions& drawn : {refined(), stream_alone()}) {
+    const auto last = [&](const TriangleSoup& soup, bool is_lossless) {
+      BuildOptions options = drawn;
+      options.lossless = is_lossless;
+      const Scene scene = scene_of(soup);
+      const BuildResult result = built(scene, options);
+      const bool is_alone = options.layout == FileLayout::StreamAlone;
+      return has_floats_of(scene.meshes()[0].mesh,
+                           refined_to_the_end(is_alone ? result.files[0].glb : streams_of(result)[0].bytes));
+    };
+    CHECK(last(rod, false));
+    CHECK(last(icosphere(3, 0.02, 7), true));
+    CHECK(!last(icosphere(3, 0.02, 7), false));
+  }
 }
 
 TEST_CASE("the levels of a file do not hang on whether its stream is compact") {

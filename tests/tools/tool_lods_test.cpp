@@ -104,7 +104,7 @@ TEST_CASE("inspect --stream tells what parts and rounds of a stream take, and th
     const auto& one = json["streams"][0];
     CHECK(one["version"] == "3.0");
     const std::size_t count = one["parts"].size();
-    CHECK(count == (file == stream ? 8 : 9));
+    CHECK(count == (file == stream ? 9 : 10));
     std::vector<double> parts(count);
     for (const auto& round : one["rounds"]) {
       REQUIRE(round["bits"].size() == count);

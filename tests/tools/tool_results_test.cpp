@@ -249,7 +249,7 @@ TEST_CASE("inspect accounts for every byte of an asset") {
   CHECK(json["stream"]["chunks"].back()["faces"] == json["levels"][0]["faces"]);
   CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("compact stream of "));
   REQUIRE(shop.build({"--lossless"}).exit_code == 0);
-  CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("removal stream of in, version 2."));
+  CHECK_THAT(run_program({"inspect", shop.glb}).out, contains("compact stream of in, version 3."));
 }
 
 TEST_CASE("inspect describes any mesh") {

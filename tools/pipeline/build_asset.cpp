@@ -103,17 +103,14 @@ void report_plan(const Scene& scene, LevelPlan& plan, const std::vector<LeveledM
 constexpr double kStreamsShare = 0.3;
 constexpr double kEncodingShare = 0.9;
 
-/// How each mesh's stream is encoded; nothing for one that keeps its floats.
-std::vector<std::optional<CompactOptions>> stream_options(const Scene& scene, const BuildOptions& build) {
-  std::vector<std::optional<CompactOptions>> options(scene.meshes().size());
-  const bool always = is_by_compact_streams(build.layout);
-  const AssetOptions storage = always ? build.storage : storage_of(scene, build);
-  const bool never = build.lossless || storage.position_grid || storage.compression == Compression::None;
-  if (never && !always) return options;
-  const std::vector<CompactOptions> compact = compact_options(scene, storage);
+/// How each mesh's stream is encoded.
+std::vector<CompactOptions> stream_options(const Scene& scene, const BuildOptions& build) {
+  const bool is_drawn = is_by_compact_streams(build.layout);
+  const AssetOptions storage = is_drawn ? build.storage : storage_of(scene, build);
+  const bool is_rounded = is_drawn || (!storage.position_grid && storage.compression != Compression::None);
+  std::vector<CompactOptions> options = compact_options(scene, storage);
   const std::vector<bool> fit = fit_compact_streams(scene, storage);
-  for (std::size_t i = 0; i < options.size(); ++i)
-    if (always || fit[i]) options[i] = compact[i];
+  for (std::size_t i = 0; i < options.size(); ++i) options[i].lossless = build.lossless || !is_rounded || !fit[i];
   return options;
 }
 
@@ -128,9 +125,10 @@ constexpr double kPlacingShare = 0.7;  // of the work on a compact stream; the r
 Result<std::vector<std::byte>> encode(std::size_t i, const ProgressiveMesh& mesh, CompactOptions options,
                                       const Placer* placer, const Progress& progress) {
   std::vector<PlacedLevel> placed;
-  if (placer != nullptr) placed = placer->fitter.placed(i, placer->measured.original(i), progress.part(kPlacingShare));
-  if (!progress.reach(placer != nullptr ? kPlacingShare : 0)) return cancelled();
-  options.progress = progress.part(placer != nullptr ? 1 - kPlacingShare : 1);
+  const double placing = placer != nullptr && !options.lossless ? kPlacingShare : 0;
+  if (placing > 0) placed = placer->fitter.placed(i, placer->measured.original(i), progress.part(placing));
+  if (!progress.reach(placing)) return cancelled();
+  options.progress = progress.part(1 - placing);
   LODESTONE_TRY(CompactStream stream, encode_compact(mesh, options, placed));
   return std::move(stream.bytes);
 }
@@ -142,18 +140,18 @@ Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const Progres
 }
 
 /// A mesh that is beyond the stream's limits goes without one; its levels do not need it, unless all but one are in it.
-/// What a compact stream does not hold, one that keeps its floats may, if the layout has such.
+/// What a compact stream does not hold, one of version 2 may, if the layout has such.
 Result<void> encode_streams(const Scene& scene, const BuildOptions& build, const Placer* placer,
                             std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes,
                             const Progress& progress) {
-  const std::vector<std::optional<CompactOptions>> options = stream_options(scene, build);
+  const std::vector<CompactOptions> options = stream_options(scene, build);
   std::vector<Result<std::vector<std::byte>>> streams(levels.size());
   for_each_in_parallel(levels.size(), [&](std::size_t i) {
     const Progress part = progress.part(1 / static_cast<double>(levels.size()));
     if (part.is_cancelled()) return;
     const ProgressiveMesh& mesh = result.simplified[i].mesh;
-    if (options[i]) streams[i] = encode(i, mesh, *options[i], placer, part);
-    const bool is_held = options[i] && (streams[i] || streams[i].error().code == ErrorCode::Cancelled);
+    streams[i] = encode(i, mesh, options[i], placer, part);
+    const bool is_held = streams[i] || streams[i].error().code == ErrorCode::Cancelled;
     if (!is_held && !is_by_compact_streams(build.layout)) streams[i] = encode(mesh, part);
   });
   if (!progress.reach(1)) return cancelled();
@@ -268,9 +266,9 @@ Result<void> make_stream_file(MeasuredScene& measured, const LevelPlan& plan, st
   }
   LODESTONE_CHECK(measure_levels(measured, plan, options, {0, 1, 0}, found, result, observer));
   if (options.keep_levels) keep_levels(found, result);
-  const CompactOptions compact = compact_options(measured.scene(), options.storage)[0];
-  result.position_bits = compact.grid_bits;
-  if (compact.grid)  // half the diagonal of a step
+  const CompactOptions compact = stream_options(measured.scene(), options)[0];
+  if (!compact.lossless) result.position_bits = compact.grid_bits;
+  if (compact.grid && !compact.lossless)  // half the diagonal of a step
     result.quantisation_error = std::sqrt(0.75) * static_cast<double>(compact.grid->range) /
                                 static_cast<double>((1 << compact.grid_bits) - 1) * mesh.scale;
   result.stream.bytes = stream.size();

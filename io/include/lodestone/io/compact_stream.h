@@ -37,6 +37,7 @@ struct CompactOptions {
   int texture_bits = 12;            ///< of texture coordinates, over their box, 2 to 24
   int weight_bits = 8;              ///< of joints' weights, 2 to 24; those of a wedge add up to 1
   int other_bits = 12;              ///< of other floats, over theirs, 2 to 24; integers stay as they are
+  bool lossless = false;            ///< keep floats bit for bit, beyond those grids, at several times the bytes
   Progress progress;
 };
 
@@ -49,6 +50,7 @@ struct CompactSizes {
   double moves = 0;      ///< where they go
   double wedges = 0;     ///< which wedges belong where
   double loose = 0;      ///< what is told face by face, with its positions
+  double rests = 0;      ///< what rounding takes, in a lossless stream
   double errors = 0;
   std::vector<double> attributes;  ///< by attribute
 

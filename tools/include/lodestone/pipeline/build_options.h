@@ -48,8 +48,9 @@ struct BuildOptions {
   Placement placement = Placement::Optimised;  ///< of each level but the first, and of those of a compact stream
   FileLayout layout = FileLayout::OneFile;
   bool stream = true;  ///< write each mesh's removal stream, with all levels in one file
-  /// With all levels in one file: keep the stream's floats, bit for bit, at several times its size. So do streams of
-  /// what is not compressed, has a grid of a given step, or needs more than 16 bits for a position.
+  /// Keep the streams' floats, bit for bit, at two to three times their size; none of their levels are placed. So do
+  /// streams of what needs more than 16 bits for a position and, with all levels in one file, of what is not compressed
+  /// or has a grid of a given step.
   bool lossless = false;
   bool strict = false;       ///< stop before anything is encoded where a target cannot be met
   bool keep_levels = false;  ///< keep the levels as the files have them: see `BuildResult::decoded`

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <lodestone/core/vec.h>
+
+#include "codec/attribute_spec.h"
+#include "codec/bit_coder.h"
+#include "codec/number_coder.h"
+
+namespace lodestone::detail {
+
+/// Codes what rounding took from floats: by how many floats each lies from the one that its whole number gives.
+class RestCoder {
+ public:
+  /// `step`: of the grid of positions.
+  RestCoder(float step, std::span<const AttributeSpec> attributes);
+
+  /// Codes a position; it holds what the whole numbers give, and `given` what a writer has. False where what is read is
+  /// no float, or not finite.
+  bool code_position(BitCoder& coder, const Vec3f& given, Vec3f& position);
+  /// The same of an element of an attribute of floats; `given` is empty for a reader. False where it is no float.
+  bool code_element(BitCoder& coder, std::size_t attribute, std::span<const std::byte> given,
+                    std::span<std::byte> element);
+
+ private:
+  /// Floats of one kind, rounded by one grid.
+  struct Kind {
+    float step = 0;           // of the grid
+    std::vector<int> ratios;  // by component: how large rests are, over what is usual, sixteenths of the logarithm
+    NumberCoder numbers;
+  };
+  static bool code(BitCoder& coder, Kind& kind, std::size_t component, float given, float& value);
+
+  Kind positions_;
+  std::vector<Kind> attributes_;
+};
+
+}  // namespace lodestone::detail
