@@ -1,0 +1,33 @@
+// Writes tests/golden/compact-3.0 anew: its files and what each decodes to.
+//
+//   make_golden_compact [texts]
+//
+// Version 3.0 is fixed, so its files are: with `texts` they are read, and only what they decode to is written. Without,
+// `simplify` and the encoder of today make them. Look at the difference before you keep it.
+
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include <lodestone/io/file.h>
+
+#include "golden/compact_files.h"
+
+int main(int argc, char** argv) {
+  using namespace lodestone::test;
+  const std::filesystem::path folder = std::filesystem::path(LODESTONE_SOURCE_DIR) / kCompactFolder;
+  const bool texts_alone = argc > 1 && std::string(argv[1]) == "texts";
+  for (const CompactFile& file : compact_files()) {
+    const std::filesystem::path path = folder / (file.name + ".lods");
+    if (!texts_alone) {
+      const auto bytes = file.encode();
+      std::ofstream(path, std::ios::binary)
+          .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    }
+    const auto bytes = lodestone::read_file(path).value();
+    std::ofstream text(folder / (file.name + ".txt"));
+    text << compact_heading(file) << '\n';
+    for (const std::string& line : compact_levels(bytes)) text << line << '\n';
+    std::cout << file.name << ": " << bytes.size() << " bytes\n";
+  }
+}
