@@ -100,8 +100,9 @@ void CompactDecoder::add_moves() {
 /// Adds the positions of the newest vertices and the attributes of the newest wedges.
 Result<void> CompactDecoder::add_values(BitCoder& coder) {
   for (std::size_t v = mesh_.positions.size(); v < levels_.positions().size(); ++v) {
-    Vec3f& position = mesh_.positions.emplace_back(header_.place(levels_.positions()[v]));
-    if (rests_ && !rests_->code_position(coder, {}, position)) return broken("a position is no number");
+    const Vec3i& point = levels_.positions()[v];
+    Vec3f& position = mesh_.positions.emplace_back(header_.place(point));
+    if (rests_ && !rests_->code_position(coder, point, {}, position)) return broken("a position is no number");
   }
   for (std::size_t a = 0; a < mesh_.attributes.size(); ++a) {
     const ElementCoder& coded = levels_.attributes().attribute(a);
@@ -109,7 +110,7 @@ Result<void> CompactDecoder::add_values(BitCoder& coder) {
     std::vector<std::byte>& data = mesh_.attributes[a].data;
     for (auto w = static_cast<Index>(data.size() / size); w < levels_.wedges().size(); ++w) {
       append_element(coded.spec(), coded.numbers(w), data);
-      if (rests_ && !rests_->code_element(coder, a, {}, std::span(data).last(size)))
+      if (rests_ && !rests_->code_element(coder, a, coded.numbers(w), {}, std::span(data).last(size)))
         return broken("an attribute is no float");
     }
   }

@@ -408,16 +408,19 @@ bool CompactEncoder::write_attributes(bool of_base) {
 void CompactEncoder::write_rests() {
   if (!rests_) return;
   for (const Index vertex : rest_vertices_) {
-    Vec3f position = header_.place(levels_.positions()[coded_.vertex[vertex]]);
-    rests_->code_position(coder_, mesh_.positions[vertex], position);
+    const Vec3i& point = levels_.positions()[coded_.vertex[vertex]];
+    Vec3f position = header_.place(point);
+    rests_->code_position(coder_, point, mesh_.positions[vertex], position);
   }
   std::vector<std::byte> element;
   for (std::size_t a = 0; a < specs_.size(); ++a) {
     const std::size_t size = mesh_.attributes[a].element_bytes();
     for (const Index wedge : rest_wedges_) {
       element.clear();
-      append_element(specs_[a], levels_.attributes().attribute(a).numbers(coded_.wedge[wedge]), element);
-      rests_->code_element(coder_, a, std::span(mesh_.attributes[a].data).subspan(wedge * size, size), element);
+      const std::span<const std::int32_t> numbers = levels_.attributes().attribute(a).numbers(coded_.wedge[wedge]);
+      append_element(specs_[a], numbers, element);
+      rests_->code_element(coder_, a, numbers, std::span(mesh_.attributes[a].data).subspan(wedge * size, size),
+                           element);
     }
   }
   rest_vertices_.clear();

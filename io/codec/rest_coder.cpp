@@ -1,13 +1,12 @@
 #include "codec/rest_coder.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <limits>
 
 #include <lodestone/core/detail/finite.h>
-
-#include "codec/fixed_point.h"
 
 namespace lodestone::detail {
 namespace {
@@ -30,48 +29,64 @@ float step_of(const AttributeSpec& spec) {
 
 }  // namespace
 
+RestCoder::Kind::Kind() : is_same(std::array<std::uint32_t, 1>{4 * 8}, 1) {}
+
 RestCoder::RestCoder(float step, std::span<const AttributeSpec> attributes) {
   positions_.step = step;
-  positions_.ratios.assign(3, 0);
+  positions_.components.resize(3);
   for (const AttributeSpec& spec : attributes) {
     Kind& kind = attributes_.emplace_back();
     if (spec.is_exact()) continue;
     kind.step = step_of(spec);
-    kind.ratios.assign(spec.component_count, 0);
+    kind.components.resize(spec.component_count);
   }
 }
 
-/// Expected is a quarter of a step where all rests below half of one are as likely, and what they were of late.
-bool RestCoder::code(BitCoder& coder, Kind& kind, std::size_t component, float given, float& value) {
+/// The same number often is the same float. Else expected is a quarter of a step where all rests below half of one are
+/// as likely, and what they were of late.
+bool RestCoder::code(BitCoder& coder, Kind& kind, std::size_t c, std::int64_t number, float given, float& value) {
+  Component& component = kind.components[c];
+  const auto which = static_cast<std::uint32_t>(std::min<std::size_t>(c, 3));
+  Remembered& last = component.remembered[static_cast<std::size_t>(number) % kRemembered];
+  if (last.number == number) {
+    const int is_same = kind.is_same.code(coder, order_of(given) == order_of(last.value) ? 1 : 0,
+                                          std::array<std::uint32_t, 1>{which * 8 + component.past}, 0);
+    component.past = (2 * component.past + static_cast<std::uint32_t>(is_same)) % 8;
+    if (is_same != 0) {
+      value = last.value;
+      return true;
+    }
+  }
   const std::int64_t order = order_of(value);
   const int usual = log_of(4 * (order_of(value + kind.step) - order));
-  int& ratio = kind.ratios[component];
   NumberCoder::Guess guess;
-  guess.scale = exp2_16(usual + ratio + 8);
-  guess.kind = static_cast<std::uint32_t>(std::min<std::size_t>(component, 3));
-  guess.hints[0] = NumberCoder::hint(ratio, -208, 16);
+  guess.scale = exp2_16(usual + component.ratio + 8);
+  guess.kind = which;
+  guess.hints[0] = NumberCoder::hint(component.ratio, -208, 16);
   guess.hints[1] = NumberCoder::hint(usual, 0, 32);
-  const std::int64_t rest = kind.numbers.code(coder, order_of(given) - order, guess);
+  const std::int64_t rest = kind.rests.code(coder, order_of(given) - order, guess);
   if (order + rest < 0 || order + rest > std::int64_t{std::numeric_limits<std::uint32_t>::max()}) return false;
-  ratio += (log_of(16 * rest) - usual - ratio) / 8;
+  component.ratio += (log_of(16 * rest) - usual - component.ratio) / 8;
   value = float_of(order + rest);
+  last = {number, value};
   return true;
 }
 
-bool RestCoder::code_position(BitCoder& coder, const Vec3f& given, Vec3f& position) {
-  return code(coder, positions_, 0, given.x, position.x) && code(coder, positions_, 1, given.y, position.y) &&
-         code(coder, positions_, 2, given.z, position.z) && is_finite(position);
+bool RestCoder::code_position(BitCoder& coder, const Vec3i& numbers, const Vec3f& given, Vec3f& position) {
+  return code(coder, positions_, 0, numbers.x, given.x, position.x) &&
+         code(coder, positions_, 1, numbers.y, given.y, position.y) &&
+         code(coder, positions_, 2, numbers.z, given.z, position.z) && is_finite(position);
 }
 
-bool RestCoder::code_element(BitCoder& coder, std::size_t attribute, std::span<const std::byte> given,
-                             std::span<std::byte> element) {
+bool RestCoder::code_element(BitCoder& coder, std::size_t attribute, std::span<const std::int32_t> numbers,
+                             std::span<const std::byte> given, std::span<std::byte> element) {
   Kind& kind = attributes_[attribute];
-  for (std::size_t c = 0; c < kind.ratios.size(); ++c) {
+  for (std::size_t c = 0; c < kind.components.size(); ++c) {
     const auto component = element.subspan(c * sizeof(float), sizeof(float));
     float value = 0, wanted = 0;
     std::memcpy(&value, component.data(), sizeof value);
     if (!given.empty()) std::memcpy(&wanted, given.data() + c * sizeof wanted, sizeof wanted);
-    if (!code(coder, kind, c, wanted, value)) return false;
+    if (!code(coder, kind, c, numbers[c], wanted, value)) return false;
     std::memcpy(component.data(), &value, sizeof value);
   }
   return true;
