@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,7 @@ class RestCoder {
 
   /// A number, and the float that last had it.
   struct Remembered {
-    std::int64_t number = -1;
+    std::int64_t number = std::numeric_limits<std::int64_t>::min();  // none
     float value = 0;
   };
   struct Component {
