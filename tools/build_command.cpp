@@ -193,7 +193,7 @@ void BuildCommand::add_format_options(CLI::App& app) {
                  "One file, levels by MSFT_lod (default); a file for each level and an index; or one file of a coarse "
                  "level (3 % "
                  "of the faces, or one target) and a stream that refines it to the whole, together about as large as "
-                 "the whole mesh by Draco: a draft, read by this program alone so far")
+                 "the whole mesh by Draco")
       ->check(CLI::IsMember({"msft-lod", "files", "stream"}))
       ->type_name("NAME")
       ->group(group);

@@ -225,8 +225,6 @@ Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar) {
     if (command.strict) finished.outcome = Outcome::TargetNotMet;
   }
   if (finished.outcome != Outcome::Done) return finished;
-  if (is_by_compact_streams(options.layout))
-    print_warning("the format of streams by --profile stream and of .lods is a draft: a later version may not read it");
   LODESTONE_CHECK(write(command, scene, report));
   return finished;
 }

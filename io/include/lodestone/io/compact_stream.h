@@ -28,8 +28,7 @@ struct CompactGrid {
   float range = 1;  ///< its edge, > 0
 };
 
-/// Settings of a compact stream. docs/compact-stream.md describes the format, which is a draft: streams are not for
-/// keeping yet.
+/// Settings of a compact stream. docs/compact-stream.md describes the format.
 struct CompactOptions {
   int grid_bits = 14;               ///< positions become one of 2^this along each edge of the grid's cube, 8 to 16
   std::optional<CompactGrid> grid;  ///< unset: the mesh's own box
