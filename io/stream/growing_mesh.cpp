@@ -1,29 +1,33 @@
 #include "stream/growing_mesh.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <lodestone/core/detail/text.h>
 
 namespace lodestone::detail {
 namespace {
 
-/// Calls `visit` with each array of a mesh that has so many of something.
-template <class Mesh, class Visit>
-void for_each_array(Mesh& mesh, const Visit& visit) {
-  visit(mesh.positions);
-  visit(mesh.wedge_vertex);
-  for (auto& attribute : mesh.attributes) visit(attribute.data);
-  for (auto& group : mesh.groups) visit(group.base_corners);
-  visit(mesh.record_wedge_begin);
-  visit(mesh.sector_begin);
-  visit(mesh.sectors);
-  visit(mesh.polygon_begin);
-  visit(mesh.polygons);
-  visit(mesh.slots);
-  visit(mesh.triangles);
-  visit(mesh.move_begin);
-  visit(mesh.moves);
-  visit(mesh.round_begin);
-  visit(mesh.deviation);
-  visit(mesh.curvature_error);
+/// Calls `visit` with each array of a mesh that has so many of something, and with the same one of others beside it.
+template <class Visit, class Mesh, class... Others>
+void for_each_array(const Visit& visit, Mesh& mesh, Others&... others) {
+  visit(mesh.positions, others.positions...);
+  visit(mesh.wedge_vertex, others.wedge_vertex...);
+  for (std::size_t i = 0; i < mesh.attributes.size(); ++i) visit(mesh.attributes[i].data, others.attributes[i].data...);
+  for (std::size_t i = 0; i < mesh.groups.size(); ++i)
+    visit(mesh.groups[i].base_corners, others.groups[i].base_corners...);
+  visit(mesh.record_wedge_begin, others.record_wedge_begin...);
+  visit(mesh.sector_begin, others.sector_begin...);
+  visit(mesh.sectors, others.sectors...);
+  visit(mesh.polygon_begin, others.polygon_begin...);
+  visit(mesh.polygons, others.polygons...);
+  visit(mesh.slots, others.slots...);
+  visit(mesh.triangles, others.triangles...);
+  visit(mesh.move_begin, others.move_begin...);
+  visit(mesh.moves, others.moves...);
+  visit(mesh.round_begin, others.round_begin...);
+  visit(mesh.deviation, others.deviation...);
+  visit(mesh.curvature_error, others.curvature_error...);
 }
 
 }  // namespace
@@ -55,9 +59,40 @@ void MeshMark::restore(ProgressiveMesh& mesh) const {
   mesh.curvature_error.resize(position_ + 1);
 }
 
+void MeshCopy::prepare(const ProgressiveMesh& mesh, const ProgressiveMesh& copy) {
+  if (copy.groups.empty()) {  // nothing yet
+    made_ = mesh;
+    return;
+  }
+  made_ = {};
+  made_.attributes.resize(mesh.attributes.size());
+  made_.groups.resize(mesh.groups.size());
+  const auto make_room = [](const auto& from, const auto& to, auto& made) {
+    if (to.capacity() >= from.size()) return;
+    made.reserve(std::max(from.size(), to.capacity() + to.capacity() / 2));
+    made.assign(from.begin(), from.end());
+  };
+  for_each_array(make_room, mesh, copy, made_);
+}
+
+void MeshCopy::finish(const ProgressiveMesh& mesh, ProgressiveMesh& copy) {
+  if (copy.groups.empty()) {
+    std::swap(copy, made_);
+    return;
+  }
+  const auto grow = [](const auto& from, auto& to, auto& made) {
+    if (to.capacity() < from.size())
+      to.swap(made);
+    else
+      to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(to.size()), from.end());
+  };
+  for_each_array(grow, mesh, copy, made_);
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) copy.groups[g].face_count = mesh.groups[g].face_count;
+}
+
 std::uint64_t held_bytes(const ProgressiveMesh& mesh) {
   std::uint64_t bytes = 0;
-  for_each_array(mesh, [&](const auto& array) { bytes += std::uint64_t{array.capacity()} * sizeof(array[0]); });
+  for_each_array([&](const auto& array) { bytes += std::uint64_t{array.capacity()} * sizeof(array[0]); }, mesh);
   return bytes;
 }
 
@@ -71,7 +106,7 @@ Result<void> check_held_bytes(std::uint64_t held, std::uint64_t most) {
 }
 
 void trim(ProgressiveMesh& mesh) {
-  for_each_array(mesh, [](auto& array) { array.shrink_to_fit(); });
+  for_each_array([](auto& array) { array.shrink_to_fit(); }, mesh);
 }
 
 }  // namespace lodestone::detail

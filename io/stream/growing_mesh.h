@@ -28,6 +28,20 @@ class MeshMark {
   std::vector<Index> face_counts_;
 };
 
+/// Has a copy of a mesh grow as that does, in two steps: the first takes the time and the memory, the second alone
+/// changes the copy. Pre: what the mesh had when it was copied last is as it was.
+class MeshCopy {
+ public:
+  /// Makes arrays where those of the copy have no room for what the mesh has now.
+  void prepare(const ProgressiveMesh& mesh, const ProgressiveMesh& copy);
+  /// Copies what is new, and puts those arrays in place; this keeps the ones before them. Allocates nothing.
+  /// Pre: neither mesh has changed since `prepare`.
+  void finish(const ProgressiveMesh& mesh, ProgressiveMesh& copy);
+
+ private:
+  ProgressiveMesh made_;  // empty arrays where there is room
+};
+
 /// Returns the bytes that a mesh's arrays take, with the room that they have to grow.
 std::uint64_t held_bytes(const ProgressiveMesh& mesh);
 

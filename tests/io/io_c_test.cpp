@@ -1,20 +1,25 @@
 #include <lodestone/lodestone.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <lodestone/io/compact_stream.h>
 #include <lodestone/io/draw_cursor.h>
+#include <lodestone/io/geomorph.h>
 #include <lodestone/io/stream_format.h>
 #include <lodestone/io/stream_reader.h>
 #include <lodestone/lod/simplify.h>
 
 #include "support/mesh_properties.h"
+#include "support/placed_shapes.h"
 #include "support/random.h"
 
 namespace lodestone::test {
@@ -27,6 +32,12 @@ ProgressiveMesh progressive(const TriangleSoup& soup) {
 }
 
 std::vector<std::byte> compact_bytes() { return encode_compact(progressive(terrain(30, 3))).value().bytes; }
+
+/// With vertices that move.
+std::vector<std::byte> placed_bytes() {
+  const ProgressiveMesh mesh = progressive(terrain(30, 3));
+  return encode_compact(mesh, {}, scattered_levels(mesh, 2, 0.01, 0.01, 1)).value().bytes;
+}
 
 /// With attributes, several groups and wedges.
 std::vector<std::byte> removal_bytes() {
@@ -315,6 +326,117 @@ TEST_CASE("a later caller's larger structs are filled as far as they are known")
   CHECK(later.state.chunk_count == state_of(stream).chunk_count);
   CHECK(later.more == 42);
   lodestone_stream_destroy(stream);
+}
+
+TEST_CASE("a morph of the C interface is the C++ one's") {
+  for (const std::vector<std::byte>& bytes : {compact_bytes(), placed_bytes(), removal_bytes()}) {
+    StreamReader reader;
+    REQUIRE(reader.append(bytes));
+    const ProgressiveMesh& mesh = reader.mesh();
+    lodestone_stream* const stream = read_whole(bytes);
+    lodestone_cursor* const cursor = make_cursor(stream);
+    lodestone_range wedges = {5, 6};
+    std::size_t count = 9;
+    CHECK(lodestone_cursor_take_morphed_wedges(cursor, 0, &wedges, 1, &count) == LODESTONE_NOT_READY);
+    CHECK(lodestone_cursor_copy_start_positions(cursor, 0, 0, nullptr, 0) == LODESTONE_NOT_READY);
+    CHECK(lodestone_cursor_copy_start_attribute(cursor, 0, 0, 0, nullptr, 0) == LODESTONE_NOT_READY);
+    CHECK(lodestone_cursor_copy_origins(cursor, 0, 0, nullptr, 0) == LODESTONE_NOT_READY);
+    CHECK(lodestone_cursor_morph_from(cursor, 1, &wedges) == LODESTONE_INVALID_ARGUMENT);
+    CHECK_THAT(std::string(lodestone_stream_message(stream)), contains("position 1, where the cursor's is 0"));
+    CHECK(lodestone_cursor_morph_from(cursor, 0, nullptr) == LODESTONE_INVALID_ARGUMENT);
+    CHECK(wedges.begin == 5);
+
+    Geomorph expected(mesh);
+    Random random(1);
+    for (int move = 0; move < 10; ++move) {
+      const auto fine = static_cast<std::uint32_t>(random.below(mesh.record_count() + 1));
+      const auto coarse = static_cast<std::uint32_t>(random.below(fine + 1));
+      REQUIRE(lodestone_cursor_seek(cursor, fine) == LODESTONE_OK);
+      REQUIRE(lodestone_cursor_morph_from(cursor, coarse, &wedges) == LODESTONE_OK);
+      expected.set(coarse, fine);
+      CHECK(EntryRange{wedges.begin, wedges.end} == expected.new_wedges());
+      const auto end = static_cast<std::uint32_t>(wedges.end);
+      std::vector<float> starts(3 * end), same_starts(3 * end);
+      REQUIRE(lodestone_cursor_copy_start_positions(cursor, 0, end, starts.data(), starts.size()) == LODESTONE_OK);
+      copy_starts(expected, {0, end}, same_starts.data());
+      CHECK(starts == same_starts);
+      std::vector<std::uint32_t> origins(end);
+      REQUIRE(lodestone_cursor_copy_origins(cursor, 0, end, origins.data(), origins.size()) == LODESTONE_OK);
+      for (std::uint32_t w = 0; w < end; ++w) CHECK(origins[w] == expected.origin(w));
+      for (std::uint32_t i = 0; i < mesh.attributes.size(); ++i) {
+        const std::size_t each = mesh.attributes[i].element_bytes();
+        std::vector<std::byte> out(each * end), same_out(each * end);
+        REQUIRE(lodestone_cursor_copy_start_attribute(cursor, i, 0, end, out.data(), out.size()) == LODESTONE_OK);
+        copy_starts(expected, mesh.attributes[i], {0, end}, same_out.data());
+        CHECK(out == same_out);
+        CHECK(lodestone_cursor_copy_start_attribute(cursor, i, 0, 1, out.data(), each - 1) == LODESTONE_NO_ROOM);
+      }
+      std::vector<lodestone_range> ranges(100);
+      std::vector<EntryRange> same_ranges;
+      REQUIRE(lodestone_cursor_take_morphed_wedges(cursor, 0, ranges.data(), 100, &count) == LODESTONE_OK);
+      expected.take_moved_wedges(0, same_ranges);
+      REQUIRE(count == same_ranges.size());
+      for (std::size_t i = 0; i < count; ++i) CHECK(EntryRange{ranges[i].begin, ranges[i].end} == same_ranges[i]);
+
+      CHECK(lodestone_cursor_copy_start_positions(cursor, 0, end + 1, starts.data(), 3 * (end + 1)) ==
+            LODESTONE_INVALID_ARGUMENT);
+      CHECK(lodestone_cursor_copy_start_positions(cursor, 0, 1, starts.data(), 2) == LODESTONE_NO_ROOM);
+      CHECK(lodestone_cursor_copy_start_positions(cursor, 0, 1, nullptr, 3) == LODESTONE_INVALID_ARGUMENT);
+      CHECK(lodestone_cursor_copy_origins(cursor, 1, 0, origins.data(), 1) == LODESTONE_INVALID_ARGUMENT);
+      CHECK(lodestone_cursor_copy_origins(cursor, 0, 1, origins.data(), 0) == LODESTONE_NO_ROOM);
+      CHECK(lodestone_cursor_copy_origins(cursor, 0, 1, nullptr, 1) == LODESTONE_INVALID_ARGUMENT);
+      CHECK(lodestone_cursor_take_morphed_wedges(cursor, 0, nullptr, 1, &count) == LODESTONE_INVALID_ARGUMENT);
+      CHECK(lodestone_cursor_take_morphed_wedges(cursor, 0, ranges.data(), 0, &count) == LODESTONE_NO_ROOM);
+    }
+    CHECK(lodestone_cursor_copy_start_attribute(cursor, 99, 0, 0, nullptr, 0) == LODESTONE_INVALID_ARGUMENT);
+    lodestone_cursor_destroy(cursor);
+    lodestone_stream_destroy(stream);
+  }
+}
+
+TEST_CASE("one thread appends to a shared stream while another draws from it") {
+  const std::vector<std::byte> bytes = placed_bytes();
+  lodestone_stream* stream = nullptr;
+  CHECK(lodestone_stream_create_shared(nullptr, nullptr) == LODESTONE_INVALID_ARGUMENT);
+  REQUIRE(lodestone_stream_create_shared(nullptr, &stream) == LODESTONE_OK);
+  CHECK(lodestone_stream_append(stream, 5, bytes.data(), 5) == LODESTONE_INVALID_ARGUMENT);
+  CHECK_THAT(std::string(lodestone_stream_reading_message(stream)), contains("bytes from 5 on"));
+  CHECK(std::string(lodestone_stream_message(stream)).empty());
+  std::atomic<bool> ended = false, failed = false;
+  std::size_t frames = 0;
+  std::thread drawing([&] {
+    lodestone_cursor* cursor = nullptr;
+    std::vector<float> positions;
+    for (bool last = false; !last; ++frames) {
+      last = ended;
+      if (cursor == nullptr && lodestone_cursor_create(stream, nullptr, &cursor) == LODESTONE_NOT_READY) continue;
+      auto state = sized<lodestone_stream_state>();
+      auto level = sized<lodestone_level>();
+      lodestone_range wedges;
+      bool good = lodestone_stream_get_state(stream, &state) == LODESTONE_OK &&
+                  lodestone_cursor_seek(cursor, last ? kNoIndex : state.record_count / 2) == LODESTONE_OK &&
+                  lodestone_cursor_get_level(cursor, &level) == LODESTONE_OK &&
+                  lodestone_cursor_morph_from(cursor, level.position / 2, &wedges) == LODESTONE_OK;
+      positions.resize(3 * level.wedge_count);
+      good = good && lodestone_cursor_copy_positions(cursor, 0, level.wedge_count, positions.data(),
+                                                     positions.size()) == LODESTONE_OK;
+      if (last) good = good && state.chunks_ready == state.chunk_count && level.position == state.record_count;
+      if (!good) failed = true;
+    }
+    lodestone_cursor_destroy(cursor);
+  });
+  std::int32_t code = LODESTONE_OK;
+  for (std::size_t at = 0; at < bytes.size() && code == LODESTONE_OK; at += 100)
+    code = lodestone_stream_append(stream, at, &bytes[at], std::min<std::size_t>(100, bytes.size() - at));
+  ended = true;
+  drawing.join();
+  CHECK(code == LODESTONE_OK);
+  CHECK(lodestone_stream_finish(stream) == LODESTONE_OK);
+  CHECK(std::string(lodestone_stream_reading_message(stream)).empty());
+  CHECK(!failed);
+  CHECK(frames > 0);
+  lodestone_stream_destroy(stream);
+  CHECK(std::string(lodestone_stream_reading_message(nullptr)) != "");
 }
 
 }  // namespace lodestone::test

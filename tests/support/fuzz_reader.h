@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <span>
 
+#include <lodestone/io/geomorph.h>
 #include <lodestone/io/stream_reader.h>
 
 #include "support/same_mesh.h"
@@ -18,6 +19,17 @@ inline void require_valid(const ProgressiveMesh& mesh) {
   }
 }
 
+/// Aborts where what a level begins as is not there.
+inline void require_morph(const ProgressiveMesh& mesh) {
+  const auto last = static_cast<Index>(mesh.record_count());
+  Geomorph morph(mesh);
+  for (const Index coarse : {Index{0}, last / 2}) {
+    morph.set(coarse, last);
+    for (Index wedge = 0; wedge < morph.new_wedges().end; ++wedge)
+      if (morph.origin(morph.origin(wedge)) != morph.origin(wedge)) std::abort();
+  }
+}
+
 /// Reads a stream in pieces, aborts where what that gives is not what the whole gives: the same mesh, or an error and a
 /// valid mesh.
 inline void check_in_pieces(std::span<const std::byte> bytes, const Result<ProgressiveMesh>& whole) {
@@ -28,7 +40,9 @@ inline void check_in_pieces(std::span<const std::byte> bytes, const Result<Progr
   if (read) read = reader.finish();
   if (read.has_value() != whole.has_value()) std::abort();
   if (whole && !same(reader.mesh(), *whole)) std::abort();
-  if (reader.chunk_count() > 0) require_valid(reader.mesh());
+  if (reader.chunk_count() == 0) return;
+  require_valid(reader.mesh());
+  require_morph(reader.mesh());
 }
 
 }  // namespace lodestone::test

@@ -110,7 +110,7 @@ function sumOfLevel(stream, cursor, position) {
   const { wedgeCount, deviation } = cursor.level;
   let sum = 2166136261;
   for (let group = 0; group < groupCount; ++group) sum = addToSum(sum, cursor.corners(group));
-  sum = addToSum(sum, stream.positions(0, wedgeCount));
+  sum = addToSum(sum, cursor.positions(0, wedgeCount));
   for (let i = 0; i < attributeCount; ++i) sum = addToSum(sum, stream.attributeValues(i, 0, wedgeCount));
   return addToSum(sum, new Float32Array([deviation])) >>> 0;
 }
@@ -141,6 +141,7 @@ function sumsOf(runtime, bytes, length) {
 async function follow(url, more = {}) {
   const stream = await LodestoneStream.open(url, { worker: false, module: wasm, ...more });
   const pieces = [];
+  let places = new Float32Array();
   const groups = stream.groups.map(() => []);
   let updates = 0;
   let wedges = 0;
@@ -149,6 +150,8 @@ async function follow(url, more = {}) {
     assert.equal(update.wedges.begin, wedges);
     wedges = update.wedges.end;
     pieces.push(update.wedges);
+    places = Float32Array.from([...places, ...update.wedges.positions]);
+    for (const { begin, positions } of update.moved) places.set(positions, 3 * begin);
     update.groups.forEach(({ count, ranges }, group) => {
       for (const { begin, corners } of ranges) corners.forEach((corner, i) => (groups[group][begin + i] = corner));
       groups[group].length = count;
@@ -158,7 +161,7 @@ async function follow(url, more = {}) {
   stream.close();
   let sum = 2166136261;
   for (const corners of groups) sum = addToSum(sum, Uint32Array.from(corners));
-  for (const { positions } of pieces) sum = addToSum(sum, positions);
+  sum = addToSum(sum, places);
   stream.attributes.forEach((_, i) => {
     for (const { attributes } of pieces) sum = addToSum(sum, attributes[i]);
   });
@@ -268,6 +271,46 @@ function checksOfStream(path) {
       stream.append(0, bytes);
       return `${(stream.state.recordCount / Math.min(...times) / 1000).toFixed(3)} M records/s, the first time ${times[0].toFixed(0)} ms`;
     },
+    'wedges come from those of the level before': async () => {
+      const runtime = await load(wasm);
+      const stream = runtime.createStream();
+      stream.append(0, bytes);
+      const cursor = stream.createCursor();
+      const { recordCount } = stream.state;
+      assert.throws(() => cursor.origins(1), { code: 'LODESTONE_INVALID_ARGUMENT', message: /where the cursor's is 0/ });
+      for (const [coarse, fine] of [[0, recordCount], [Math.floor(recordCount / 2), recordCount], [recordCount, recordCount], [0, 1]]) {
+        cursor.seek(coarse);
+        const { wedgeCount } = cursor.level;
+        cursor.seek(fine);
+        const { begin, origins } = cursor.origins(coarse);
+        assert.equal(begin, wedgeCount);
+        assert.equal(begin + origins.length, cursor.level.wedgeCount);
+        origins.forEach((origin) => assert.ok(origin < begin || origins[origin - begin] === origin));
+      }
+      cursor.destroy();
+      stream.destroy();
+      return `${recordCount} records`;
+    },
+    'updates say what wedges come from': () =>
+      served({}, async (url) => {
+        const stream = await LodestoneStream.open(url, { worker: false, module: wasm, morph: true });
+        let before = 0; // wedges
+        const take = ({ level, morph }) => {
+          const [least, most] = [before, level.wedgeCount].sort((a, b) => a - b);
+          if (before > 0 && least < most) {
+            assert.equal(morph.begin, least);
+            assert.equal(morph.origins.length, most - least);
+          }
+          before = level.wedgeCount;
+        };
+        let update = await stream.next();
+        for (; !(stream.complete && update.level.deviation === 0); update = await stream.next()) take(update);
+        take(update);
+        stream.want(stream.chunks[0].deviation);
+        take(await stream.next());
+        stream.close();
+        return 'there and back';
+      }),
     'a server of ranges': followed({}),
     'a server without ranges': followed({ ranges: 'no' }),
     'a server that answers other ranges': followed({ ranges: 'wrong' }),
@@ -404,6 +447,73 @@ function checksOfPage(site, path) {
   };
 }
 
+/** Has vertices slide from level to level. */
+function checksOfSlides(site, path) {
+  const native = execFileSync(options.sums, [path], { encoding: 'utf8' }).trim().split('\n').map((line) => line.split(' ').map(Number));
+  let page;
+  let server;
+  const go = (pixelError, radii) =>
+    page.ask(
+      ([pixels, distance]) => {
+        window.setPixelError(pixels);
+        window.moveTo(distance);
+        return window.frames(1500);
+      },
+      [pixelError, radii],
+    );
+  /** How many frames show something between two levels: others have the numbers of the first and the last. */
+  const between = (frames) => {
+    const ends = [frames[0].sum, frames.at(-1).sum];
+    return new Set(frames.map(({ sum }) => sum).filter((sum) => !ends.includes(sum))).size;
+  };
+  const isWhole = async () => assert.equal(await page.ask(() => window.sumOfLevel()), native.at(-1)[0]);
+  return {
+    'ends as without slides': async () => {
+      const { openPage } = await import('./browser.mjs');
+      server = await serveSlowly(folder, { rate: 1e6, piece: 1000 });
+      page = await openPage(site.browser, `${site.address}/pages/stream.html`);
+      await page.ask(([url]) => window.openStream(url, { pixelError: 0, morph: 300 }), [`${server.address}/${basename(path)}`]);
+      await page.ask(() => window.settle(true));
+      await isWhole();
+      await assert.rejects(page.ask(([url]) => window.openStream(url, { morph: -1 }), [`${server.address}/${basename(path)}`]), /morph is -1/);
+      return 'the native buffers';
+    },
+    'slides to a coarser level, and then draws that': async () => {
+      await page.ask(([url]) => window.openStream(url, { pixelError: 0, morph: 300 }), [`${server.address}/${basename(path)}`]);
+      await page.ask(() => window.settle(true));
+      const frames = await go(1, 60);
+      const meanwhile = frames.filter(({ drawn, faceCount }) => drawn > faceCount).length;
+      assert.ok(between(frames) >= 3 && meanwhile >= 3, `${between(frames)} between, ${meanwhile} with more faces`);
+      assert.equal(frames.at(-1).drawn, frames.at(-1).faceCount);
+      assert.ok(frames.at(-1).drawn < frames[0].drawn);
+      return `${between(frames)} frames between`;
+    },
+    'and back': async () => {
+      const frames = await go(0, 3.2);
+      assert.ok(between(frames) >= 3, `${between(frames)} between`);
+      await isWhole();
+      return `${between(frames)} frames between`;
+    },
+    'and to and fro before it is there': async () => {
+      for (let i = 0; i < 6; ++i)
+        await page.ask(
+          ([distance]) => {
+            window.setPixelError(1);
+            window.moveTo(distance);
+            return window.frames(100);
+          },
+          [i % 2 ? 3.2 : 60],
+        );
+      await go(0, 3.2);
+      await page.ask(() => window.settle(true));
+      await isWhole();
+      await page.page.close();
+      await server.close();
+      return 'the native buffers';
+    },
+  };
+}
+
 const log = new Log();
 const streams = buildStreams();
 await log.run('module', checksOfModule());
@@ -412,5 +522,6 @@ if (small && large) await log.run('memory', checksOfMemory(large, small));
 for (const path of streams) await log.run(basename(path), checksOfStream(path));
 const site = await openSite({ ...options, more: { package: options.package } });
 for (const path of streams) await log.run(`${basename(path)} in three.js`, checksOfPage(site, path));
+for (const path of streams.filter((path) => path !== large)) await log.run(`${basename(path)} with slides`, checksOfSlides(site, path));
 await site.close();
 log.close();

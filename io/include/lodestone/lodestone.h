@@ -5,7 +5,8 @@
  * Handles are opaque. A function returns LODESTONE_OK or a negative code; with a code it has changed nothing, but for
  * what append says. What comes out goes to memory of the caller. A struct that a function reads or writes begins with
  * its size, which the caller sets: later versions append fields. Pointers must not be null unless it says so. One
- * thread at a time for a stream and its cursors; different streams know nothing of each other. */
+ * thread at a time for a stream and its cursors, but for shared streams; different streams know nothing of each other.
+ */
 #ifndef LODESTONE_LODESTONE_H
 #define LODESTONE_LODESTONE_H
 
@@ -62,6 +63,11 @@ typedef struct lodestone_stream_options {
 
 /* Makes a stream of which nothing has arrived. `options` may be null. */
 LODESTONE_API int32_t lodestone_stream_create(const lodestone_stream_options* options, lodestone_stream** stream);
+/* The same for two threads, as lodestone/io/shared_stream.h says: one reads, which calls append, finish and
+ * reading_message; one draws, which calls all else, and then waits for what one chunk adds to be copied at most. It is
+ * destroyed when neither calls anything any more. Takes a second mesh until all has arrived. */
+LODESTONE_API int32_t lodestone_stream_create_shared(const lodestone_stream_options* options,
+                                                     lodestone_stream** stream);
 /* Ends a stream, or does nothing with null. Pre: its cursors have been destroyed. */
 LODESTONE_API void lodestone_stream_destroy(lodestone_stream* stream);
 
@@ -74,8 +80,10 @@ LODESTONE_API int32_t lodestone_stream_append(lodestone_stream* stream, uint64_t
 /* Says that no more bytes come. MALFORMED where a stream does not end behind a chunk. */
 LODESTONE_API int32_t lodestone_stream_finish(lodestone_stream* stream);
 /* Returns what the last call with this stream or one of its cursors failed with, in words, "" where it did not; until
- * the next such call. */
+ * the next such call. Of a shared stream: the last but for append and finish. */
 LODESTONE_API const char* lodestone_stream_message(const lodestone_stream* stream);
+/* Returns what the last append or finish failed with, as lodestone_stream_message does. */
+LODESTONE_API const char* lodestone_stream_reading_message(const lodestone_stream* stream);
 
 typedef struct lodestone_stream_state {
   size_t size;        /* sizeof(lodestone_stream_state) */
@@ -189,6 +197,30 @@ LODESTONE_API int32_t lodestone_cursor_copy_positions(lodestone_cursor* cursor, 
 /* Writes smooth normals of the level for its wedges, three floats each: for streams without the attribute NORMAL.
  * They change wherever faces do. `room`: floats that `out` has place for. */
 LODESTONE_API int32_t lodestone_cursor_copy_normals(lodestone_cursor* cursor, float* out, size_t room);
+
+/* ---- Geomorphs: vertices slide between two levels; what is drawn meanwhile is the finer one, the cursor's ----
+ * For refinement: seek, upload, then morph_from where it came from; t goes from 0 to 1. To coarsen: morph_from where it
+ * is to go; t from 1 to 0; then seek. An engine mixes two vertex buffers: start * (1 - t) + own * t. Which corner of
+ * the coarse level a vertex starts at, and how close the faces then lie to it: lodestone/io/geomorph.h. */
+
+/* Names the level that the cursor's begins as, at a position that is not above the cursor's. `wedges`: those that it
+ * has not; others start where they lie, but for those of take_morphed_wedges. What is named stays so until the next
+ * call, whatever the cursor does. Allocates once, and where the mesh has grown. */
+LODESTONE_API int32_t lodestone_cursor_morph_from(lodestone_cursor* cursor, uint32_t position, lodestone_range* wedges);
+/* Gives the ranges of wedges that both levels have, whose positions may differ, as take_changes does; since they were
+ * taken last. NOT_READY before morph_from, as those that follow. */
+LODESTONE_API int32_t lodestone_cursor_take_morphed_wedges(lodestone_cursor* cursor, size_t gap,
+                                                           lodestone_range* ranges, size_t room, size_t* count);
+/* Copies where wedges [begin, end) of the finer level start, three floats each. `room`: floats. */
+LODESTONE_API int32_t lodestone_cursor_copy_start_positions(lodestone_cursor* cursor, uint32_t begin, uint32_t end,
+                                                            float* out, size_t room);
+/* Copies what an attribute starts with, as lodestone_stream_copy_attribute does what it is. `room`: bytes. */
+LODESTONE_API int32_t lodestone_cursor_copy_start_attribute(lodestone_cursor* cursor, uint32_t index, uint32_t begin,
+                                                            uint32_t end, void* out, size_t room);
+/* Copies the wedges of the coarser level that wedges [begin, end) of the finer one start as; themselves where nothing
+ * is to slide. For those who have the vertex buffers at hand, it says all. `room`: numbers. */
+LODESTONE_API int32_t lodestone_cursor_copy_origins(lodestone_cursor* cursor, uint32_t begin, uint32_t end,
+                                                    uint32_t* out, size_t room);
 
 /* ---- Cameras ---- */
 

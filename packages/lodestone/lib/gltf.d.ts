@@ -2,7 +2,10 @@ import type { BufferGeometry } from 'three';
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 import type * as refined from './refined_mesh.js';
 
-export type PluginOptions = refined.RefinementOptions;
+export interface PluginOptions extends refined.RefinementOptions {
+  /** Milliseconds in which vertices slide from level to level, instead of jumping. Default 0: none. */
+  morph?: number;
+}
 
 /** A mesh of the file that refines itself. */
 export type RefinedMesh = refined.RefinedMesh<BufferGeometry>;

@@ -4,6 +4,7 @@ import { Box3, LoaderUtils, Sphere, Vector2 } from 'three';
 import { EXTENSION, RefinedMesh, Refinement, ownAttributes, streamOf } from './refined_mesh.js';
 import { StreamBuffers, ballOf, viewOf } from './three_buffers.js';
 import { pixelsOfInstances, pixelsThrough } from './view.js';
+import { checkRange } from './wasm.js';
 
 /** What a mesh's stream is drawn from: the geometries of its primitives. */
 class GeometryBuffers {
@@ -12,14 +13,26 @@ class GeometryBuffers {
   #parts; // { geometry, primitive, own, box }
   #grown = false;
 
-  constructor(stream, parts, json, primitives) {
+  constructor(stream, parts, json, primitives, sliding) {
     this.#stream = stream;
-    this.#buffers = new StreamBuffers(stream);
+    this.#buffers = new StreamBuffers(stream, sliding);
     this.#parts = parts.map((part) => ({ ...part, own: ownAttributes(json, primitives[part.primitive], stream.attributes) }));
   }
 
-  write(update) {
-    this.#grown = this.#buffers.write(update);
+  leave(update) {
+    return this.#buffers.leave(update);
+  }
+
+  write(update, isShown) {
+    this.#grown = this.#buffers.write(update, isShown);
+  }
+
+  step() {
+    this.#buffers.step();
+  }
+
+  finish() {
+    this.#buffers.finish();
   }
 
   show(update, isFirst) {
@@ -38,7 +51,8 @@ class GeometryBuffers {
 /**
  * `loader.register((parser) => new LodestonePlugin(parser))`. What is loaded has `gltf.userData.lodestone`, its meshes that
  * refine themselves as they are rendered: see `Refinement` in gltf.d.ts. Options: `pixelError`, how many pixels a level's
- * error may cover; `budget`, a DetailBudget that says so in its place; `onUpdate`, called when there is something new to draw;
+ * error may cover; `budget`, a DetailBudget that says so in its place; `morph`, milliseconds in which vertices slide from level
+ * to level, 0: none; `onUpdate`, called when there is something new to draw;
  * `worker` and `fetch` as LodestoneStream.open has.
  */
 export class LodestonePlugin {
@@ -49,7 +63,8 @@ export class LodestonePlugin {
   constructor(parser, options = {}) {
     this.name = EXTENSION;
     this.#parser = parser;
-    this.#options = { pixelError: 1, ...options };
+    this.#options = { pixelError: 1, morph: 0, ...options };
+    checkRange('morph', this.#options.morph, 0, Number.MAX_SAFE_INTEGER);
   }
 
   /** GLTFLoader asks for each mesh; null at once leaves it to others. */
@@ -68,7 +83,8 @@ export class LodestonePlugin {
     });
     const faceCount = parts.reduce((sum, { geometry }) => sum + (geometry.index ?? geometry.attributes.position).count / 3, 0);
     const shown = { deviation: extension.deviation, faceCount };
-    const makeBuffers = (stream) => new GeometryBuffers(stream, parts, this.#parser.json, definition.primitives);
+    const sliding = { morph: this.#options.morph, onStep: () => this.#options.onUpdate?.(mesh) };
+    const makeBuffers = (stream) => new GeometryBuffers(stream, parts, this.#parser.json, definition.primitives, sliding);
     const mesh = new RefinedMesh(() => this.#locate(extension), shown, this.#options, makeBuffers);
     mesh.geometries = parts.map(({ geometry }) => geometry);
     mesh.primitiveCount = parts.length;

@@ -44,6 +44,9 @@ export interface Update {
   groups: { count: number; ranges: { begin: number; corners: Uint32Array }[] }[];
   /** Where they were asked for: of all wedges of the level. */
   normals: Float32Array | null;
+  /** Where it was asked for: what wedges that only the finer of the two levels has, from `begin` on, come from: wedges of the
+   * coarser one, at which they begin to slide, or end where this level is the coarser one; themselves where they are to stay. */
+  morph: { begin: number; origins: Uint32Array } | null;
   /** A box around all vertices that have arrived. */
   low: [number, number, number];
   high: [number, number, number];
@@ -60,6 +63,8 @@ export interface StreamOptions {
   slack?: number;
   /** Work out smooth normals for each update, for streams without NORMAL. Default false. */
   normals?: boolean;
+  /** Say in each update what wedges come from, for vertices to slide: see `Update.morph`. Default false. */
+  morph?: boolean;
   /** What the mesh may take in memory, in bytes; one that takes more fails with LODESTONE_LIMIT_EXCEEDED. Default 192 MiB:
    * decoding takes about six times as much, and all streams of a page share 2 GiB. */
   mostBytes?: number;

@@ -31,8 +31,8 @@ function connectWorker(url, options, receive) {
   const id = ++shared.last;
   const worker = sharedWorker();
   const send = (message) => worker.postMessage({ id, ...message });
-  const { deviation, slack, normals, mostBytes } = options; // what can be sent
-  send({ type: 'open', url, options: { deviation, slack, normals, mostBytes } });
+  const { deviation, slack, normals, morph, mostBytes } = options; // what can be sent
+  send({ type: 'open', url, options: { deviation, slack, normals, morph, mostBytes } });
   shared.streams.set(id, receive);
   return {
     want: (deviation) => send({ type: 'want', deviation }),

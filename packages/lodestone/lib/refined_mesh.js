@@ -41,7 +41,7 @@ export function ownAttributes({ accessors }, { attributes, targets = [] }, forma
 export class RefinedMesh {
   #source; // () => Promise of a URL
   #options;
-  #makeBuffers; // (stream) => what has write(update), show(update, isFirst) and dispose()
+  #makeBuffers; // (stream) => what has write(update, isShown) and show(update, isFirst); leave(update), step() and finish() where vertices slide
   #shown; // { deviation, faceCount } of the file's own level
   #stream;
   #buffers;
@@ -50,6 +50,7 @@ export class RefinedMesh {
   #opening;
   #wanted = Infinity;
   #frame = -1;
+  #drawn = -1; // the frame that vertices have been moved for
   #finest = Infinity; // wanted in this frame
   #needed = 0; // when it was last wanted as fine as it is
   #url; // of what is in memory
@@ -107,6 +108,8 @@ export class RefinedMesh {
 
   /** Is told by each object that shows one of its primitives, at so many places, how many pixels a unit of the mesh covers there. */
   see(pixels, frame, places = 1) {
+    if (frame !== this.#drawn) this.#buffers?.step?.();
+    this.#drawn = frame;
     if (!(pixels > 0)) return; // at no size
     if (this.#options.budget) this.#options.budget.see(this, pixels, places / this.primitiveCount);
     else this.#need(this.#options.pixelError / pixels, frame);
@@ -136,8 +139,9 @@ export class RefinedMesh {
   }
 
   async #open() {
-    const { worker, fetch, budget } = this.#options;
-    const options = { deviation: this.#wanted, ...(worker !== undefined && { worker }), ...(fetch && { fetch }), ...(budget && { slack: 1 }) };
+    const { worker, fetch, budget, morph } = this.#options;
+    const more = { ...(budget && { slack: 1 }), ...(morph > 0 && { morph: true }) };
+    const options = { deviation: this.#wanted, ...(worker !== undefined && { worker }), ...(fetch && { fetch }), ...more };
     this.#url = await this.#source();
     const stream = await LodestoneStream.open(this.#url, options);
     this.#stream = stream;
@@ -145,6 +149,7 @@ export class RefinedMesh {
     this.#buffers = this.#makeBuffers(stream);
     stream.want(this.#wanted);
     for await (const update of stream) {
+      if (this.#attached) await this.#buffers.leave?.(update);
       if (this.#closed) break;
       this.#apply(update);
       this.#options.onUpdate?.(this);
@@ -165,7 +170,7 @@ export class RefinedMesh {
   /** What arrives first is coarser than what is there already: only a level as fine takes its place. */
   #apply(update) {
     this.#addBones(update.wedges);
-    this.#buffers.write(update);
+    this.#buffers.write(update, this.#attached);
     const isFirst = !this.#attached && update.level.faceCount >= this.#shown.faceCount;
     this.#attached ||= isFirst;
     if (this.#attached) this.#buffers.show(update, isFirst);
@@ -188,6 +193,7 @@ export class RefinedMesh {
     if (this.#closed) return;
     this.#closed = true;
     this.#stream?.close();
+    this.#buffers?.finish?.();
     this.#options.budget?.remove(this);
     this.#resolve();
   }

@@ -157,14 +157,21 @@ export class Session {
     const way = this.#cursor.choose(this.#deviation) - from;
     if (way === 0 && this.#shown) return false;
     this.#shown = true;
-    this.#cursor.seek(from + Math.sign(way) * Math.min(Math.abs(way), MOST_RECORDS));
-    const { update, transferred } = this.#update();
+    const { update, transferred } = this.#update(this.#seek(from, from + Math.sign(way) * Math.min(Math.abs(way), MOST_RECORDS)));
     this.#post(update, transferred);
     await this.#acknowledged.wait();
     return true;
   }
 
-  #update() {
+  /** Returns what wedges come from on the way, where that was asked for: the finer level's say so. */
+  #seek(from, to) {
+    const wants = this.#options.morph;
+    const gone = wants && to < from ? this.#cursor.origins(to) : null;
+    this.#cursor.seek(to);
+    return wants && to > from ? this.#cursor.origins(from) : gone;
+  }
+
+  #update(morph) {
     const cursor = this.#cursor;
     const stream = this.#stream;
     const state = stream.state;
@@ -179,6 +186,7 @@ export class Session {
         .map((range) => ({ begin: range.begin, positions: cursor.positions(range.begin, Math.min(range.end, begin)) })),
       groups: [],
       normals: this.#options.normals ? cursor.normals() : null,
+      morph,
       low: state.low,
       high: state.high,
       bytes: state.dueBegin,
@@ -195,6 +203,7 @@ export class Session {
     }
     const arrays = [update.wedges.positions, ...update.wedges.attributes, ...update.moved.map(({ positions }) => positions), ...update.groups.flatMap(({ ranges }) => ranges.map(({ corners }) => corners))];
     if (update.normals) arrays.push(update.normals);
+    if (morph) arrays.push(morph.origins);
     return { update, transferred: arrays.map(({ buffer }) => buffer) };
   }
 }

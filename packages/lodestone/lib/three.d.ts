@@ -3,13 +3,15 @@ import type { DetailBudget } from './budget.js';
 import type { Level, LodestoneStream, StreamOptions } from './index.js';
 
 /** `deviation` is that before the first `update`: Infinity where nothing is said, so that only the beginning is fetched. */
-export interface MeshOptions extends StreamOptions {
+export interface MeshOptions extends Omit<StreamOptions, 'morph'> {
   /** A material, or a function that makes one of a group's number; none: a plain one. */
   material?: Material | ((number: number) => Material);
   /** How many pixels of the picture the error of the level may cover. Default 1; 0: all detail. */
   pixelError?: number;
   /** Says what is wanted in place of `pixelError`: see budget.d.ts. */
   budget?: DetailBudget;
+  /** Milliseconds in which vertices slide from level to level, instead of jumping. Default 0: none. */
+  morph?: number;
   /** Called when the object has changed: for pages that render only then. */
   onUpdate?: (mesh: LodestoneMesh) => void;
 }

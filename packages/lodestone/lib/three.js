@@ -3,6 +3,7 @@ import { Box3, BufferGeometry, Group, Mesh, MeshStandardMaterial, Sphere } from 
 import { LodestoneStream } from './index.js';
 import { StreamBuffers, ballOf, pixelsPerUnit, viewOf } from './three_buffers.js';
 import { STEP, pixelsThrough } from './view.js';
+import { checkRange } from './wasm.js';
 
 export { pixelsPerUnit };
 
@@ -18,12 +19,15 @@ export class LodestoneMesh extends Group {
 
   /**
    * Opens a stream; resolves when its first level can be drawn. `material`: a material, or a function that makes one of a
-   * group's number; none: a plain one. `budget`: a DetailBudget that says what is wanted in place of `pixelError`. `onUpdate` is
-   * called when the object has changed. Other options are those of LodestoneStream.open.
+   * group's number; none: a plain one. `budget`: a DetailBudget that says what is wanted in place of `pixelError`. `morph`:
+   * milliseconds in which vertices slide from level to level; 0: none. `onUpdate` is called when the object has changed. Other options are those of LodestoneStream.open.
    */
-  static async load(url, { material, pixelError = 1, deviation = Infinity, budget, onUpdate, ...options } = {}) {
+  static async load(url, { material, pixelError = 1, deviation = Infinity, budget, morph = 0, onUpdate, ...options } = {}) {
     // How it is seen is not known yet: no more is fetched than its beginning.
-    const mesh = new LodestoneMesh(await LodestoneStream.open(url, { deviation, ...(budget && { slack: 1 }), ...options }), material);
+    checkRange('morph', morph, 0, Number.MAX_SAFE_INTEGER);
+    const more = { ...(budget && { slack: 1 }), ...(morph > 0 && { morph: true }) };
+    const stream = await LodestoneStream.open(url, { deviation, ...more, ...options });
+    const mesh = new LodestoneMesh(stream, material, { morph, onStep: () => onUpdate?.(mesh) });
     mesh.pixelError = pixelError;
     mesh.#wanted = deviation;
     mesh.#apply(await mesh.#stream.next());
@@ -34,11 +38,11 @@ export class LodestoneMesh extends Group {
     return mesh;
   }
 
-  constructor(stream, material) {
+  constructor(stream, material, { morph, onStep } = {}) {
     super();
     this.#stream = stream;
     this.pixelError = 1;
-    this.#buffers = new StreamBuffers(stream);
+    this.#buffers = new StreamBuffers(stream, { morph, onStep });
     this.#withNormals = stream.attributes.some(({ name }) => name === 'NORMAL');
     for (const group of stream.groups) this.#addGroup(group, material);
   }
@@ -71,6 +75,7 @@ export class LodestoneMesh extends Group {
 
   /** Says how the object is seen: by which camera, in a picture of how many pixels' height. */
   update(camera, height) {
+    this.#buffers.step();
     const pixels = this.pixelsPerUnit(camera, height);
     if (!(pixels > 0)) return; // at no size
     if (this.#budget) return void this.#budget.see(this.#stream, pixels);
@@ -82,6 +87,7 @@ export class LodestoneMesh extends Group {
 
   async #follow(onUpdate) {
     for await (const update of this.#stream) {
+      await this.#buffers.leave(update);
       this.#apply(update);
       onUpdate?.(this);
     }
@@ -100,6 +106,7 @@ export class LodestoneMesh extends Group {
   /** Stops reading and frees what the object holds, but for its materials. */
   dispose() {
     this.#stream.close();
+    this.#buffers.finish();
     this.#budget?.remove(this.#stream);
     for (const { geometry } of this.children) geometry.dispose();
   }

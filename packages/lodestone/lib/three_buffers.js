@@ -3,6 +3,7 @@
 import { BufferAttribute, Vector3 } from 'three';
 import { GrowingArray } from './growing_array.js';
 import { targetOf } from './refined_mesh.js';
+import { Slides } from './slides.js';
 import { pixelsAt } from './view.js';
 
 const NAMES = {
@@ -18,6 +19,9 @@ const NAMES = {
   WEIGHTS_0: 'skinWeight',
 };
 
+/** Of the faces of levels between which vertices slide: from much coarser ones they would come out of what looks like nothing. */
+const MOST_RATIO = 32;
+
 /** A buffer that grows: three.js uploads what `write` is given and no more, but for when it grows. */
 class GrowingAttribute {
   #array;
@@ -26,6 +30,19 @@ class GrowingAttribute {
     this.#array = new GrowingArray(itemSize, likely);
     this.normalized = normalized;
     this.attribute = undefined;
+  }
+
+  get array() {
+    return this.#array.array;
+  }
+
+  get itemSize() {
+    return this.#array.itemSize;
+  }
+
+  /** Whether what lies between two values means anything. */
+  get mixes() {
+    return this.normalized || this.array instanceof Float32Array;
   }
 
   set likely(count) {
@@ -37,9 +54,15 @@ class GrowingAttribute {
     const { itemSize } = this.#array;
     const grows = this.#array.write(begin, values);
     if (grows) this.attribute = new BufferAttribute(this.#array.array, itemSize, this.normalized);
-    else if (values.length > 0) this.attribute.addUpdateRange(begin * itemSize, values.length);
+    else this.touch(begin, values.length / itemSize);
     this.attribute.needsUpdate = true;
     return grows;
+  }
+
+  /** Has elements uploaded. */
+  touch(begin, count) {
+    if (count > 0) this.attribute.addUpdateRange(begin * this.itemSize, count * this.itemSize);
+    this.attribute.needsUpdate = true;
   }
 }
 
@@ -52,9 +75,13 @@ export class StreamBuffers {
   #attributes = []; // { name, growing, target }, shared by all groups
   #indices = []; // by group
   #wedges = 0;
+  #level; // that has been written last
+  #slides;
 
-  constructor(stream) {
+  /** `morph`: milliseconds in which vertices slide from level to level; `onStep` is called when they have. */
+  constructor(stream, { morph = 0, onStep = () => {} } = {}) {
     this.#stream = stream;
+    if (morph > 0) this.#slides = new Slides(morph, onStep);
     const whole = stream.chunks.at(-1);
     const add = (name, itemSize, normalized, target) =>
       this.#attributes.push({ name, target, growing: new GrowingAttribute(itemSize, normalized, whole.vertexCount) });
@@ -71,8 +98,55 @@ export class StreamBuffers {
     return this.#attributes.some(({ target }) => target !== undefined);
   }
 
-  /** Takes an update; returns whether geometries need their buffers anew: all of them, since they share those of vertices. */
-  write({ wedges, moved, groups, normals }) {
+  /**
+   * Those whose elements slide. Joints are numbers of bones, which mean nothing in between, and so weights stay, too; targets
+   * say by how far they move vertices wherever those are. Normals that have been worked out are all written anew.
+   */
+  get #sliding() {
+    const slides = ({ name, target, growing }) => growing.mixes && target === undefined && !/^skin|^(joints|weights)_/.test(name);
+    const own = this.#attributes.slice(0, 1 + this.#stream.attributes.length);
+    return own.filter(slides).map(({ growing }) => growing);
+  }
+
+  /** Which way vertices slide with an update: 1 to a finer level, -1 to a coarser one, 0 not at all. */
+  #wayOf({ level, morph }) {
+    if (!this.#slides || !morph || !this.#level) return 0;
+    const ratio = level.faceCount / this.#level.faceCount;
+    return ratio < MOST_RATIO && 1 / ratio < MOST_RATIO ? Math.sign(level.position - this.#level.position) : 0;
+  }
+
+  /** Has vertices slide to a coarser level, before that is written; resolves when they are there. */
+  async leave(update) {
+    if (this.#wayOf(update) < 0) await this.#slides.coarsen(update, this.#sliding);
+  }
+
+  /**
+   * Takes an update, from whose level before, where that `isShown`, vertices slide; returns whether geometries need their buffers
+   * anew: all of them, since they share those of vertices.
+   */
+  write(update, isShown = true) {
+    const slides = isShown && this.#wayOf(update) > 0;
+    this.#level = update.level;
+    if (!slides) return this.#write(update);
+    let grown = false;
+    const write = () => {
+      grown = this.#write(update);
+    };
+    this.#slides.refine(update, this.#sliding, write);
+    return grown;
+  }
+
+  /** Moves what slides to where it is by now: for who draws. */
+  step() {
+    this.#slides?.step();
+  }
+
+  /** Has what slides be where it is to be. */
+  finish() {
+    this.#slides?.finish();
+  }
+
+  #write({ wedges, moved, groups, normals }) {
     let grown = false;
     if (wedges.end > wedges.begin) {
       this.#wedges = wedges.end;

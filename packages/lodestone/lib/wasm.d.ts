@@ -63,6 +63,8 @@ export class Cursor {
   positions(begin: number, end: number): Float32Array;
   /** Returns the wedges that are to be uploaded and have not been returned before. */
   newWedges(): { begin: number; end: number };
+  /** Returns the wedges that this level has and the one at `position`, which is no finer, has not: from `begin` on what wedge of that each comes from. */
+  origins(position: number): { begin: number; origins: Uint32Array };
   /** Returns smooth normals of the level, three floats for each wedge. */
   normals(): Float32Array;
   destroy(): void;

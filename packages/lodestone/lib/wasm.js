@@ -251,6 +251,18 @@ export class Cursor {
     return { begin, end };
   }
 
+  /**
+   * Returns the wedges that this level has and the one at `position`, which is no finer, has not: from `begin` on what wedge of
+   * that each comes from; itself where it is to stay.
+   */
+  origins(position) {
+    this.stream.run('cursor_morph_from', this.handle, position);
+    const [begin, end] = this.runtime.results(2);
+    const count = end - begin;
+    const origins = this.runtime.take(Uint32Array, count, (at) => this.stream.run('cursor_origins', this.handle, begin, end, at, count));
+    return { begin, origins };
+  }
+
   /** Returns smooth normals of the level, three floats for each wedge. */
   normals() {
     const count = 3 * this.level.wedgeCount;

@@ -136,6 +136,16 @@ EXPORT("cursor_new_wedges") int32_t web_cursor_new_wedges(lodestone_cursor* curs
 EXPORT("cursor_normals") int32_t web_cursor_normals(lodestone_cursor* cursor, float* out, size_t room) {
   return lodestone_cursor_copy_normals(cursor, out, room);
 }
+EXPORT("cursor_morph_from") int32_t web_cursor_morph_from(lodestone_cursor* cursor, uint32_t position) {
+  lodestone_range wedges = {0, 0};
+  const int32_t code = lodestone_cursor_morph_from(cursor, position, &wedges);
+  GIVE((double)wedges.begin, (double)wedges.end);
+  return code;
+}
+EXPORT("cursor_origins")
+int32_t web_cursor_origins(lodestone_cursor* cursor, uint32_t begin, uint32_t end, uint32_t* out, size_t room) {
+  return lodestone_cursor_copy_origins(cursor, begin, end, out, room);
+}
 EXPORT("pixels_per_unit")
 double web_pixels_per_unit(double screen_height, double field_of_view, double distance, double scale) {
   const lodestone_view view = {sizeof view, screen_height, field_of_view, distance, scale};

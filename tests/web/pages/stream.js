@@ -75,6 +75,18 @@ window.settle = async (whole = false) => {
   return state;
 };
 
+/** Draws frames for so long; returns of each the level, how many faces were drawn, and a number that changes as vertices slide. */
+window.frames = async (milliseconds) => {
+  const frames = [];
+  for (const end = performance.now() + milliseconds; performance.now() < end; ) {
+    const { position, faceCount, drawn } = window.drawFrame();
+    const { array } = mesh.children[0].geometry.attributes.position;
+    frames.push({ position, faceCount, drawn, sum: array.reduce((sum, number) => sum + Math.abs(number), 0) });
+    await new Promise((resolve) => setTimeout(resolve, 5));
+  }
+  return frames;
+};
+
 window.watchTasks = () => {
   worst = 0;
   last = performance.now();

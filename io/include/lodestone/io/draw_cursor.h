@@ -5,19 +5,11 @@
 #include <span>
 #include <vector>
 
+#include <lodestone/io/entry_range.h>
 #include <lodestone/lod/cursor.h>
 #include <lodestone/lod/progressive_mesh.h>
 
 namespace lodestone {
-
-/// Entries of a buffer: [begin, end).
-struct EntryRange {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-
-  std::size_t size() const { return end - begin; }
-  friend bool operator==(const EntryRange&, const EntryRange&) = default;
-};
 
 /// A cursor that says what an engine has to upload after each move: which entries of the index buffers changed, which
 /// wedges are new, and which lie elsewhere. Vertex buffers only grow, and a coarser level uses the first of what is in
@@ -57,25 +49,6 @@ class DrawCursor {
   }
 
  private:
-  /// Items that changed, of some entries each, in blocks: a bit for each.
-  class Changes {
-   public:
-    static constexpr std::size_t kBlock = 64;
-
-    explicit Changes(std::size_t entries_each) : entries_each_(entries_each) {}
-    void make_room(std::size_t item_count);
-    void mark(std::size_t item) {
-      const std::size_t block = item / kBlock;
-      bits_[block / 64] |= std::uint64_t{1} << block % 64;
-    }
-    void mark(std::size_t first, std::size_t end);
-    void take(std::size_t item_count, std::size_t gap, std::vector<EntryRange>& ranges);
-
-   private:
-    std::size_t entries_each_;
-    std::vector<std::uint64_t> bits_;
-  };
-
   void make_room();
   void mark_records(Index first, Index end);
   void move_vertices(Index from, Index to);
@@ -83,8 +56,8 @@ class DrawCursor {
 
   const ProgressiveMesh* mesh_;
   Cursor cursor_;
-  std::vector<Changes> changed_;          // faces, by group
-  Changes moved_;                         // wedges
+  std::vector<detail::ChangedEntries> changed_;  // faces, by group
+  detail::ChangedEntries moved_;                 // wedges
   std::vector<Vec3f> positions_;          // of the vertices that were there at the last move, where records move any
   std::vector<std::size_t> face_counts_;  // by group, where a move began
   std::size_t wedges_reached_;
