@@ -21,6 +21,8 @@ const floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1).rotateX(-Math.PI / 2)
 floor.receiveShadow = true;
 light.shadow.mapSize.set(1024, 1024);
 
+const morph = Number(new URLSearchParams(location.search).get('morph') ?? 0);
+
 let gltf;
 let mixer;
 let sphere;
@@ -33,7 +35,7 @@ window.openFile = async (url, compression, refines, triangles) => {
   window.closeFile();
   const loader = makeLoader(compression);
   budget = triangles && new DetailBudget({ triangles, pixelError: 0 });
-  if (refines) loader.register((parser) => new LodestonePlugin(parser, { budget, onUpdate: () => ++updates }));
+  if (refines) loader.register((parser) => new LodestonePlugin(parser, { budget, morph, onUpdate: () => ++updates }));
   gltf = await loader.loadAsync(url);
   scene.add(gltf.scene);
   mixer = new THREE.AnimationMixer(gltf.scene);
