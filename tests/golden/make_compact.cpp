@@ -1,9 +1,11 @@
 // Writes tests/golden/compact-3.0 anew: its files and what each decodes to.
 //
 //   make_golden_compact [texts]
+//   make_golden_compact lines FILE.lods …
 //
 // Version 3.0 is fixed, so its files are: with `texts` they are read, and only what they decode to is written. Without,
-// `simplify` and the encoder of today make them. Look at the difference before you keep it.
+// `simplify` and the encoder of today make them. Look at the difference before you keep it. With `lines` nothing is
+// written: it prints what any streams decode to, as tests/python/compact_decoder.py does.
 
 #include <fstream>
 #include <iostream>
@@ -15,6 +17,12 @@
 
 int main(int argc, char** argv) {
   using namespace lodestone::test;
+  if (argc > 1 && std::string(argv[1]) == "lines") {
+    for (int i = 2; i < argc; ++i) {
+      for (const std::string& line : compact_levels(lodestone::read_file(argv[i]).value())) std::cout << line << '\n';
+    }
+    return 0;
+  }
   const std::filesystem::path folder = std::filesystem::path(LODESTONE_SOURCE_DIR) / kCompactFolder;
   const bool texts_alone = argc > 1 && std::string(argv[1]) == "texts";
   for (const CompactFile& file : compact_files()) {
