@@ -2,24 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <limits>
 
 #include <lodestone/core/detail/finite.h>
 
+#include "base/ordered_bits.h"
+
 namespace lodestone::detail {
 namespace {
 
-/// Numbers all floats as they lie along the axis, those that are no number beyond the infinities; the two zeros apart.
-std::int64_t order_of(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return bits ^ (bits >> 31U != 0 ? 0xFFFFFFFFU : 0x80000000U);
-}
-float float_of(std::int64_t order) {
-  const auto bits = static_cast<std::uint32_t>(order);
-  return std::bit_cast<float>(bits ^ (bits >> 31U != 0 ? 0x80000000U : 0xFFFFFFFFU));
-}
+std::int64_t order_of(float value) { return ordered_bits(value); }
 
 /// How far apart whole numbers lie.
 float step_of(const AttributeSpec& spec) {
@@ -67,7 +60,7 @@ bool RestCoder::code(BitCoder& coder, Kind& kind, std::size_t c, std::int64_t nu
   const std::int64_t rest = kind.rests.code(coder, order_of(given) - order, guess);
   if (order + rest < 0 || order + rest > std::int64_t{std::numeric_limits<std::uint32_t>::max()}) return false;
   component.ratio += (log_of(16 * rest) - usual - component.ratio) / 8;
-  value = float_of(order + rest);
+  value = from_ordered_bits(static_cast<std::uint32_t>(order + rest));
   last = {number, value};
   return true;
 }

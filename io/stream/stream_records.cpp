@@ -26,8 +26,6 @@ void add_value_columns(std::vector<Column>& columns, std::span<const Attribute> 
   for (const Attribute& a : attributes) columns.insert(columns.end(), a.component_count, Column{planes_of(a.type), {}});
 }
 
-constexpr std::uint32_t kSignBit = 0x80000000;
-
 }  // namespace
 
 std::vector<Column> record_columns(std::span<const Attribute> attributes) {
@@ -44,15 +42,6 @@ std::vector<Column> base_columns(std::span<const Attribute> attributes) {
   columns[kBaseCorners].coding = Coding::Planes4;
   add_value_columns(columns, attributes);
   return columns;
-}
-
-std::uint32_t ordered_bits(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return bits & kSignBit ? ~bits : bits | kSignBit;
-}
-
-float from_ordered_bits(std::uint32_t ordered) {
-  return std::bit_cast<float>(ordered & kSignBit ? ordered & ~kSignBit : ~ordered);
 }
 
 OrderedComponents::OrderedComponents(ComponentType type)

@@ -9,6 +9,7 @@
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/progressive_mesh.h>
 
+#include "base/ordered_bits.h"
 #include "stream/stream_columns.h"
 
 // What encoder and decoder of the removal stream have in common: the columns of a chunk, the predictions, and the index
@@ -48,10 +49,6 @@ enum BaseColumn : std::size_t {
 /// Returns the columns of a chunk, empty. Those of attributes: one per component, in the order of the attributes.
 std::vector<Column> record_columns(std::span<const Attribute> attributes);
 std::vector<Column> base_columns(std::span<const Attribute> attributes);
-
-/// Maps a float's bits to numbers in the order of the floats, and back. Every bit pattern survives.
-std::uint32_t ordered_bits(float value);
-float from_ordered_bits(std::uint32_t ordered);
 
 /// The components of an attribute as unsigned numbers in the order of their values.
 class OrderedComponents {
