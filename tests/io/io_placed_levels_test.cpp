@@ -105,8 +105,8 @@ TEST_CASE("levels of a stream lie where they were placed, and what follows them 
 
 TEST_CASE("the deviation of any level of a stream with placed levels is a bound, within rounds too") {
   Random random(5);
-  for (const TriangleSoup& soup :
-       {terrain(24, 3), icosphere(4, 0.05, 1), annulus(24, 8), cube(8), seam_sphere(16, 12)}) {
+  for (const TriangleSoup& soup : {terrain(kReduced ? 12 : 24, 3), icosphere(kReduced ? 2 : 4, 0.05, 1),
+                                   annulus(24, kReduced ? 4 : 8), cube(kReduced ? 4 : 8), seam_sphere(16, 12)}) {
     SimplifyOptions options;
     options.dense_rounds = 1.5;
     const ProgressiveMesh mesh = simplify(mesh_of(soup), options).value().mesh;
@@ -117,7 +117,7 @@ TEST_CASE("the deviation of any level of a stream with placed levels is a bound,
       const ProgressiveMesh coded = decoded(stream.bytes);
       const Mesh whole = extract_level(coded, kNoIndex);
       const MeasuredSurface surface(whole);
-      for (int i = 0; i < 24; ++i) {
+      for (int i = 0; i < (kReduced ? 4 : 24); ++i) {
         const auto position = static_cast<Index>(random.below(coded.record_count() + 1));
         const Mesh level = extract_level(coded, position);
         if (level.face_count() == 0) continue;
@@ -202,7 +202,8 @@ TEST_CASE("levels that are none of the mesh are refused") {
 }
 
 TEST_CASE("placed levels lie closer to the mesh than its own vertices do, and say by how much") {
-  for (const TriangleSoup& soup : {icosphere(5, 0, 1), terrain(60, 3), torus(60, 30)}) {
+  for (const TriangleSoup& soup : {icosphere(kReduced ? 4 : 5, 0, 1), terrain(kReduced ? 40 : 60, 3),
+                                   torus(kReduced ? 40 : 60, kReduced ? 20 : 30)}) {
     const Mesh original = mesh_of(soup);
     SimplifyOptions options;
     options.dense_rounds = 1.5;
