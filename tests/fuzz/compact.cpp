@@ -20,7 +20,7 @@ namespace {
 
 using lodestone::test::Bytes;
 
-constexpr std::size_t kFixedBytes = 16, kChecksumBytes = 4, kFieldBytes = 1 + 4 * 4;
+constexpr std::size_t kFixedBytes = 16, kChecksumBytes = 4, kFieldBytes = 2 + 4 * 4;
 constexpr unsigned kFloat = 5126, kDirections = 1;
 
 std::uint32_t checksum(const Bytes& bytes, std::size_t at, std::size_t size) {
@@ -101,6 +101,9 @@ std::vector<Bytes> lodestone::test::fuzz_seeds() {
       const auto stream = result ? encode_compact(result->mesh, compact) : fail(ErrorCode::Malformed, "");
       if (!stream) continue;
       seeds.push_back(bytes_of(stream->bytes));
+      CompactOptions lossless = compact;
+      lossless.lossless = true;
+      if (const auto kept = encode_compact(result->mesh, lossless)) seeds.push_back(bytes_of(kept->bytes));
       const auto levels = scattered_levels(result->mesh, 2, 0.02, dense_rounds * 0.01, 1);
       if (const auto placed = encode_compact(result->mesh, compact, levels)) seeds.push_back(bytes_of(placed->bytes));
     }
