@@ -1,0 +1,136 @@
+// What a page in three.js shows when, while a model comes over a slow line: a file of `--profile stream` by the package's
+// plugin, beside the whole model in one piece by Draco and by meshoptimizer. Materials are left without their images, which
+// would take longer than any geometry.
+//
+//   node bench/stream/arrival.mjs --program PROGRAM --package FOLDER --output FOLDER MODEL.gltf
+//
+// Needs what ./run web builds. All connections share one line of 5 Mbit/s with 20 ms each way. Best on a quiet machine.
+import { execFileSync } from 'node:child_process';
+import { copyFileSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import { basename, dirname, join } from 'node:path';
+import { openPage } from '../../tests/web/browser.mjs';
+import { openSite, readOptions } from '../../tests/web/suite.mjs';
+
+const bytesPerSecond = 5e6 / 8;
+const delay = 40; // milliseconds from a request to its first byte
+const piece = 2048;
+const runs = 3;
+
+/** Serves a folder; all answers share one line, a piece of each in turn. */
+async function serveOverLine(folder) {
+  const line = []; // answers that have something to send
+  let sent = 0;
+  const send = async () => {
+    let free = performance.now();
+    for (; line.length > 0; ) {
+      const answer = line.shift();
+      if (answer.response.destroyed) continue;
+      const part = answer.bytes.subarray(answer.at, answer.at + piece);
+      answer.at += part.length;
+      free = Math.max(free, performance.now() - 20) + (1000 * part.length) / bytesPerSecond;
+      const wait = free - performance.now();
+      if (wait > 1) await new Promise((resolve) => setTimeout(resolve, wait));
+      answer.response.write(part);
+      sent += part.length;
+      if (answer.at < answer.bytes.length) line.push(answer);
+      else answer.response.end();
+    }
+  };
+  let sending;
+  const server = createServer(async (request, response) => {
+    const cors = { 'access-control-allow-origin': '*', 'access-control-allow-headers': 'range', 'access-control-expose-headers': 'content-range' };
+    if (request.method === 'OPTIONS') return void response.writeHead(204, cors).end();
+    const whole = await readFile(join(folder, basename(new URL(request.url, 'http://localhost').pathname))).catch(() => undefined);
+    if (!whole) return void response.writeHead(404, cors).end();
+    const range = /^bytes=(\d+)-(\d*)$/.exec(request.headers.range ?? '');
+    const first = range ? Number(range[1]) : 0;
+    const end = range && range[2] ? Math.min(Number(range[2]) + 1, whole.length) : whole.length;
+    await new Promise((resolve) => setTimeout(resolve, delay));
+    response.writeHead(range ? 206 : 200, { ...cors, 'content-length': end - first, 'cache-control': 'no-store',
+      ...(range && { 'content-range': `bytes ${first}-${end - 1}/${whole.length}` }) });
+    line.push({ response, bytes: whole.subarray(first, end), at: 0 });
+    sending ??= send().finally(() => {
+      sending = undefined;
+    });
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return { address: `http://127.0.0.1:${server.address().port}`, sent: () => sent, close: () => server.close() };
+}
+
+/** The model without images. */
+function plainModel(model, folder) {
+  const json = JSON.parse(readFileSync(model, 'utf8'));
+  for (const key of ['images', 'textures', 'samplers']) delete json[key];
+  for (const material of json.materials ?? []) for (const key of Object.keys(material)) if (key !== 'name' && key !== 'doubleSided') delete material[key];
+  for (const { uri } of json.buffers) copyFileSync(join(dirname(model), uri), join(folder, uri));
+  const path = join(folder, 'plain.gltf');
+  writeFileSync(path, JSON.stringify(json));
+  return path;
+}
+
+const options = readOptions();
+const folder = join(options.output, 'arrival');
+mkdirSync(folder, { recursive: true });
+const plain = plainModel(options.files[0], folder);
+const files = [
+  ['stream', 'stream.glb', ['--profile', 'stream'], 'draco', true],
+  ['stream, files beside', 'streams.gltf', ['--profile', 'stream'], 'draco', true],
+  ['whole, Draco', 'draco.glb', ['--levels', '1', '--no-stream'], 'draco', false],
+  ['whole, meshopt', 'meshopt.glb', ['--levels', '1', '--no-stream', '--compress', 'meshopt'], 'meshopt', false],
+];
+for (const [, name, settings] of files)
+  execFileSync(options.program, ['build', plain, '-o', join(folder, name), '-q', ...settings], { stdio: ['ignore', 'ignore', 'ignore'] });
+const site = await openSite({ ...options, more: { package: options.package } });
+const line = await serveOverLine(folder);
+const page = await openPage(site.browser, `${site.address}/pages/refined.html`);
+
+/** Seconds from the request on: when something is first drawn, when nothing changes any more within a pixel, when all is there. */
+async function arrive([, name, , compression, refines]) {
+  await page.ask(() => window.forget());
+  const before = line.sent();
+  const times = await page.ask(async ([url, compression, refines]) => {
+    const start = performance.now();
+    const since = () => (performance.now() - start) / 1000;
+    await window.openFile(url, compression, refines);
+    window.drawFrame();
+    const times = { first: since(), longest: 0 };
+    if (!refines) return { ...times, pixel: times.first, end: times.first, triangles: window.drawFrame().drawn };
+    window.setPixelError(1);
+    let last = window.drawFrame();
+    times.pixel = since();
+    for (let changed = performance.now(), turn = changed; performance.now() - changed < 1500; turn = performance.now()) {
+      await new Promise((resolve) => setTimeout(resolve, 4));
+      times.longest = Math.max(times.longest, performance.now() - turn);
+      const state = window.drawFrame();
+      if (state.bytes !== last.bytes || state.drawn !== last.drawn) [times.pixel, changed] = [since(), performance.now()];
+      last = state;
+    }
+    times.triangles = last.drawn;
+    times.bytes = last.bytes;
+    return times;
+  }, [`${line.address}/${name}`, compression, refines]);
+  if (refines) {
+    await page.ask(() => window.closeFile());
+    times.end = await page.ask(async ([url, compression]) => {
+      const start = performance.now();
+      await window.openFile(url, compression, true);
+      await window.finish();
+      return (performance.now() - start) / 1000;
+    }, [`${line.address}/${name}`, compression]);
+  }
+  await page.ask(() => window.closeFile());
+  return { ...times, sent: line.sent() - before };
+}
+
+const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
+const seen = files.map(() => []);
+for (let run = 0; run < runs; ++run) for (const [i, file] of files.entries()) seen[i].push(await arrive(file));
+console.log('| | bytes | first picture, s | within a pixel, s | triangles then | all, s | longest turn without drawing, ms |\n|---|---|---|---|---|---|---|');
+for (const [i, [title, name]] of files.entries()) {
+  const of = (key) => median(seen[i].map((times) => times[key]));
+  console.log(`| ${title} | ${statSync(join(folder, name)).size} | ${of('first').toFixed(2)} | ${of('pixel').toFixed(2)} | ${of('triangles')} | ${of('end').toFixed(2)} | ${of('longest').toFixed(0)} |`);
+}
+line.close();
+await site.close();
