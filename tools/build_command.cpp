@@ -199,7 +199,7 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->group(group);
   CLI::Option* none = app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
   app.add_flag("--lossless", lossless,
-               "Keep the stream's numbers bit for bit, at two to three times its size, instead of rounding them as "
+               "Keep the stream's numbers bit for bit, at two to four times its size, instead of rounding them as "
                "compressed levels do")
       ->excludes(none)
       ->group(group);

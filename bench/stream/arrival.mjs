@@ -4,60 +4,15 @@
 //
 //   node bench/stream/arrival.mjs --program PROGRAM --package FOLDER --output FOLDER MODEL.gltf
 //
-// Needs what ./run web builds. All connections share one line of 5 Mbit/s with 20 ms each way. Best on a quiet machine.
+// Needs what ./run web builds. All connections share one line of 5 Mbit/s with 40 ms from a request to its first byte. Best on a quiet machine.
 import { execFileSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
-import { readFile } from 'node:fs/promises';
-import { createServer } from 'node:http';
-import { basename, dirname, join } from 'node:path';
+import { dirname, join } from 'node:path';
 import { openPage } from '../../tests/web/browser.mjs';
+import { serveSlowly } from '../../tests/web/slow_server.mjs';
 import { openSite, readOptions } from '../../tests/web/suite.mjs';
 
-const bytesPerSecond = 5e6 / 8;
-const delay = 40; // milliseconds from a request to its first byte
-const piece = 2048;
 const runs = 3;
-
-/** Serves a folder; all answers share one line, a piece of each in turn. */
-async function serveOverLine(folder) {
-  const line = []; // answers that have something to send
-  let sent = 0;
-  const send = async () => {
-    let free = performance.now();
-    for (; line.length > 0; ) {
-      const answer = line.shift();
-      if (answer.response.destroyed) continue;
-      const part = answer.bytes.subarray(answer.at, answer.at + piece);
-      answer.at += part.length;
-      free = Math.max(free, performance.now() - 20) + (1000 * part.length) / bytesPerSecond;
-      const wait = free - performance.now();
-      if (wait > 1) await new Promise((resolve) => setTimeout(resolve, wait));
-      answer.response.write(part);
-      sent += part.length;
-      if (answer.at < answer.bytes.length) line.push(answer);
-      else answer.response.end();
-    }
-  };
-  let sending;
-  const server = createServer(async (request, response) => {
-    const cors = { 'access-control-allow-origin': '*', 'access-control-allow-headers': 'range', 'access-control-expose-headers': 'content-range' };
-    if (request.method === 'OPTIONS') return void response.writeHead(204, cors).end();
-    const whole = await readFile(join(folder, basename(new URL(request.url, 'http://localhost').pathname))).catch(() => undefined);
-    if (!whole) return void response.writeHead(404, cors).end();
-    const range = /^bytes=(\d+)-(\d*)$/.exec(request.headers.range ?? '');
-    const first = range ? Number(range[1]) : 0;
-    const end = range && range[2] ? Math.min(Number(range[2]) + 1, whole.length) : whole.length;
-    await new Promise((resolve) => setTimeout(resolve, delay));
-    response.writeHead(range ? 206 : 200, { ...cors, 'content-length': end - first, 'cache-control': 'no-store',
-      ...(range && { 'content-range': `bytes ${first}-${end - 1}/${whole.length}` }) });
-    line.push({ response, bytes: whole.subarray(first, end), at: 0 });
-    sending ??= send().finally(() => {
-      sending = undefined;
-    });
-  });
-  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  return { address: `http://127.0.0.1:${server.address().port}`, sent: () => sent, close: () => server.close() };
-}
 
 /** The model without images. */
 function plainModel(model, folder) {
@@ -83,13 +38,12 @@ const files = [
 for (const [, name, settings] of files)
   execFileSync(options.program, ['build', plain, '-o', join(folder, name), '-q', ...settings], { stdio: ['ignore', 'ignore', 'ignore'] });
 const site = await openSite({ ...options, more: { package: options.package } });
-const line = await serveOverLine(folder);
+const line = await serveSlowly(folder, { line: 5e6 / 8, delay: 40, piece: 2048 });
 const page = await openPage(site.browser, `${site.address}/pages/refined.html`);
 
 /** Seconds from the request on: when something is first drawn, when nothing changes any more within a pixel, when all is there. */
 async function arrive([, name, , compression, refines]) {
   await page.ask(() => window.forget());
-  const before = line.sent();
   const times = await page.ask(async ([url, compression, refines]) => {
     const start = performance.now();
     const since = () => (performance.now() - start) / 1000;
@@ -108,7 +62,6 @@ async function arrive([, name, , compression, refines]) {
       last = state;
     }
     times.triangles = last.drawn;
-    times.bytes = last.bytes;
     return times;
   }, [`${line.address}/${name}`, compression, refines]);
   if (refines) {
@@ -121,7 +74,7 @@ async function arrive([, name, , compression, refines]) {
     }, [`${line.address}/${name}`, compression]);
   }
   await page.ask(() => window.closeFile());
-  return { ...times, sent: line.sent() - before };
+  return times;
 }
 
 const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
@@ -132,5 +85,5 @@ for (const [i, [title, name]] of files.entries()) {
   const of = (key) => median(seen[i].map((times) => times[key]));
   console.log(`| ${title} | ${statSync(join(folder, name)).size} | ${of('first').toFixed(2)} | ${of('pixel').toFixed(2)} | ${of('triangles')} | ${of('end').toFixed(2)} | ${of('longest').toFixed(0)} |`);
 }
-line.close();
+await line.close();
 await site.close();

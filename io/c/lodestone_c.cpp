@@ -240,16 +240,18 @@ std::size_t give_ranges(std::span<const EntryRange> given, lodestone_range* rang
 }
 
 /// Checks that wedges are among so many, and that so many numbers each have room.
-Outcome check_wedges(std::size_t count, EntryRange wedges, std::size_t each, std::size_t room) {
+Outcome check_wedges(std::size_t count, EntryRange wedges, std::size_t each, std::size_t room, const void* out) {
   if (wedges.begin > wedges.end || wedges.end > count)
     return invalid(text("wedges ", wedges.begin, " to ", wedges.end, " of ", count));
   if (room / each < wedges.size())
     return {LODESTONE_NO_ROOM, text(room, " where ", each, " times ", wedges.size(), " are due")};
+  if (out == nullptr && wedges.size() > 0) return invalid("out is null");
   return {};
 }
 
-Outcome check_wedges(const lodestone_stream& stream, EntryRange wedges, std::size_t each, std::size_t room) {
-  return check_wedges(stream.mesh().wedge_vertex.size(), wedges, each, room);
+Outcome check_wedges(const lodestone_stream& stream, EntryRange wedges, std::size_t each, std::size_t room,
+                     const void* out) {
+  return check_wedges(stream.mesh().wedge_vertex.size(), wedges, each, room, out);
 }
 
 template <class What>
@@ -369,9 +371,8 @@ int32_t lodestone_stream_copy_attribute(lodestone_stream* stream, uint32_t index
     if (index >= s.mesh().attributes.size()) return out_of("attribute", index, s.mesh().attributes.size());
     const Attribute& a = s.mesh().attributes[index];
     const EntryRange wedges = {begin, end};
-    if (Outcome checked = check_wedges(s, wedges, a.element_bytes(), room); checked.code != LODESTONE_OK)
+    if (Outcome checked = check_wedges(s, wedges, a.element_bytes(), room, out); checked.code != LODESTONE_OK)
       return checked;
-    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
     if (wedges.size() > 0)
       std::memcpy(out, a.data.data() + begin * a.element_bytes(), wedges.size() * a.element_bytes());
     return Outcome{};
@@ -457,8 +458,7 @@ int32_t lodestone_cursor_copy_positions(lodestone_cursor* cursor, uint32_t begin
                                         size_t room) {
   return run(cursor, [&](lodestone_cursor& c) {
     const EntryRange wedges = {begin, end};
-    if (Outcome checked = check_wedges(*c.stream, wedges, 3, room); checked.code != LODESTONE_OK) return checked;
-    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
+    if (Outcome checked = check_wedges(*c.stream, wedges, 3, room, out); checked.code != LODESTONE_OK) return checked;
     lodestone::copy_positions(c.stream->mesh(), c.draw, wedges, out);
     return Outcome{};
   });
@@ -475,8 +475,7 @@ int32_t lodestone_cursor_take_new_wedges(lodestone_cursor* cursor, lodestone_ran
 int32_t lodestone_cursor_copy_normals(lodestone_cursor* cursor, float* out, size_t room) {
   return run(cursor, [&](lodestone_cursor& c) {
     const EntryRange wedges = {0, c.draw.wedge_count()};
-    if (Outcome checked = check_wedges(*c.stream, wedges, 3, room); checked.code != LODESTONE_OK) return checked;
-    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
+    if (Outcome checked = check_wedges(*c.stream, wedges, 3, room, out); checked.code != LODESTONE_OK) return checked;
     lodestone::copy_normals(c.stream->mesh(), c.draw, out);
     return Outcome{};
   });
@@ -509,9 +508,8 @@ int32_t lodestone_cursor_copy_start_positions(lodestone_cursor* cursor, uint32_t
                                               size_t room) {
   return run_morph(cursor, [&](lodestone_cursor&, const Geomorph& morph) {
     const EntryRange wedges = {begin, end};
-    if (Outcome checked = check_wedges(morph.new_wedges().end, wedges, 3, room); checked.code != LODESTONE_OK)
+    if (Outcome checked = check_wedges(morph.new_wedges().end, wedges, 3, room, out); checked.code != LODESTONE_OK)
       return checked;
-    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
     copy_starts(morph, wedges, out);
     return Outcome{};
   });
@@ -523,9 +521,8 @@ int32_t lodestone_cursor_copy_start_attribute(lodestone_cursor* cursor, uint32_t
     const std::vector<Attribute>& attributes = c.stream->mesh().attributes;
     if (index >= attributes.size()) return out_of("attribute", index, attributes.size());
     const EntryRange wedges = {begin, end};
-    Outcome checked = check_wedges(morph.new_wedges().end, wedges, attributes[index].element_bytes(), room);
+    Outcome checked = check_wedges(morph.new_wedges().end, wedges, attributes[index].element_bytes(), room, out);
     if (checked.code != LODESTONE_OK) return checked;
-    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
     copy_starts(morph, attributes[index], wedges, static_cast<std::byte*>(out));
     return Outcome{};
   });
@@ -535,9 +532,8 @@ int32_t lodestone_cursor_copy_origins(lodestone_cursor* cursor, uint32_t begin, 
                                       size_t room) {
   return run_morph(cursor, [&](lodestone_cursor&, const Geomorph& morph) {
     const EntryRange wedges = {begin, end};
-    if (Outcome checked = check_wedges(morph.new_wedges().end, wedges, 1, room); checked.code != LODESTONE_OK)
+    if (Outcome checked = check_wedges(morph.new_wedges().end, wedges, 1, room, out); checked.code != LODESTONE_OK)
       return checked;
-    if (out == nullptr && wedges.size() > 0) return invalid("out is null");
     for (std::uint32_t wedge = begin; wedge < end; ++wedge) *out++ = morph.origin(wedge);
     return Outcome{};
   });

@@ -41,10 +41,7 @@ ProgressiveMesh progressive(const TriangleSoup& soup, double dense_rounds = 1.5)
 CompactStream encoded(const ProgressiveMesh& mesh, int grid_bits = 12) {
   CompactOptions options;
   options.grid_bits = grid_bits;
-  auto stream = encode_compact(mesh, options);
-  INFO((stream ? std::string() : stream.error().message));
-  REQUIRE(stream);
-  return std::move(*stream);
+  return stream_of(mesh, options);
 }
 
 /// A level's faces by their group and wedges, numbered anew; each begins with its least.

@@ -7,6 +7,7 @@
 #include <lodestone/io/stream_reader.h>
 #include <lodestone/lod/simplify.h>
 
+#include "support/arriving.h"
 #include "support/counted_memory.h"
 #include "support/data.h"
 #include "support/mesh_properties.h"
@@ -119,11 +120,7 @@ TEST_CASE("the buffers follow a stream that arrives") {
   Random random(4);
   std::optional<DrawCursor> cursor;
   std::optional<Engine> engine;
-  for (std::span<const std::byte> bytes = stream->bytes; !bytes.empty();) {
-    const auto piece = bytes.first(std::min<std::size_t>(1 + random.below(400), bytes.size()));
-    REQUIRE(reader.append(piece));
-    bytes = bytes.subspan(piece.size());
-    if (reader.chunk_count() == 0) continue;
+  arrive(stream->bytes, 400, random, reader, [&] {
     if (!cursor) {
       cursor.emplace(reader.mesh());
       engine.emplace(reader.mesh(), *cursor);
@@ -131,7 +128,7 @@ TEST_CASE("the buffers follow a stream that arrives") {
     cursor->seek(static_cast<Index>(random.below(reader.mesh().record_count() + 1)));
     engine->upload(0);
     engine->check();
-  }
+  });
   cursor->seek(kNoIndex);
   engine->upload(0);
   engine->check();

@@ -15,6 +15,7 @@
 #include <lodestone/lod/simplify.h>
 #include <lodestone/lod/surface_index.h>
 
+#include "support/arriving.h"
 #include "support/counted_memory.h"
 #include "support/data.h"
 #include "support/mesh_properties.h"
@@ -335,11 +336,7 @@ TEST_CASE("a morph follows a stream that arrives, and allocates nothing where th
   StreamReader reader;
   Random random(4);
   std::optional<Geomorph> morph;
-  for (std::span<const std::byte> bytes = stream->bytes; !bytes.empty();) {
-    const auto piece = bytes.first(std::min<std::size_t>(1 + random.below(4000), bytes.size()));
-    REQUIRE(reader.append(piece));
-    bytes = bytes.subspan(piece.size());
-    if (reader.chunk_count() == 0) continue;
+  arrive(stream->bytes, 4000, random, reader, [&] {
     if (!morph) morph.emplace(reader.mesh());
     const auto last = static_cast<Index>(reader.mesh().record_count());
     const auto coarse = static_cast<Index>(random.below(last + 1));
@@ -351,7 +348,7 @@ TEST_CASE("a morph follows a stream that arrives, and allocates nothing where th
       REQUIRE(morph->origin(w) == direct.origin(w));
       REQUIRE(morph->start(w) == direct.start(w));
     }
-  }
+  });
   REQUIRE(reader.done());
   CHECK(!reader.mesh().moves.empty());
   const std::size_t allocations = allocation_count;

@@ -24,10 +24,7 @@ CompactStream encoded(const ProgressiveMesh& mesh, int grid_bits = 12) {
   CompactOptions options;
   options.grid_bits = grid_bits;
   options.lossless = true;
-  auto stream = encode_compact(mesh, options);
-  INFO((stream ? std::string() : stream.error().message));
-  REQUIRE(stream);
-  return std::move(*stream);
+  return stream_of(mesh, options);
 }
 
 /// Checks that a mesh has the floats that it had, bit for bit, and bounds that are none the wider for a grid.

@@ -44,10 +44,7 @@ CompactStream encoded(const ProgressiveMesh& mesh, const std::vector<PlacedLevel
   CompactOptions options;
   options.grid_bits = kBits;
   options.grid = box_of(mesh).grid;
-  auto stream = encode_compact(mesh, options, levels);
-  INFO((stream ? std::string() : stream.error().message));
-  REQUIRE(stream);
-  return std::move(*stream);
+  return stream_of(mesh, options, levels);
 }
 
 /// How far a point is outside of a box.

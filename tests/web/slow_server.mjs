@@ -7,13 +7,21 @@ import { join, normalize, sep } from 'node:path';
 
 /**
  * Starts it. `behaviour` may be changed at any time: ranges 'yes' | 'no' | 'wrong' | 'first', which is the first half whatever
- * is asked for; piece, bytes sent at once; rate, bytes a second; limit, bytes of a file before which it stops; drop, bytes
+ * is asked for; piece, bytes sent at once; rate, bytes a second of each answer; line, bytes a second of all together; delay,
+ * milliseconds before an answer begins; limit, bytes of a file before which it stops; drop, bytes
  * after which each connection breaks; swap, whether every other answer waits for the one after it, 200 ms at most.
  */
 export async function serveSlowly(folder, behaviour) {
   const asked = [];
   const waiting = new Set();
   const answered = new EventEmitter();
+  let lineFree = 0; // when what was sent last is through
+  const sent = (length) => {
+    const { rate = Infinity, line = Infinity } = behaviour;
+    const now = performance.now();
+    lineFree = Math.max(lineFree, now) + (1000 * length) / line;
+    return new Promise((resolve) => setTimeout(resolve, Math.max((1000 * length) / rate, lineFree - now)));
+  };
   const isHeld = (at) => at >= (behaviour.limit ?? Infinity);
   const moved = () => new Promise((resolve) => waiting.add(resolve));
 
@@ -38,6 +46,7 @@ export async function serveSlowly(folder, behaviour) {
     });
     if (behaviour.swap && asked.length % 2 === 1)
       await Promise.race([new Promise((resolve) => answered.once('answer', resolve)), new Promise((resolve) => setTimeout(resolve, 200))]);
+    if (behaviour.delay) await new Promise((resolve) => setTimeout(resolve, behaviour.delay));
     const { drop = Infinity } = behaviour;
     for (let at = first; at < end && !response.destroyed; ) {
       while (isHeld(at) && !response.destroyed) await Promise.race([moved(), new Promise((resolve) => response.once('close', resolve))]);
@@ -45,7 +54,7 @@ export async function serveSlowly(folder, behaviour) {
       if (at + length - first > drop) return void response.destroy();
       response.write(bytes.subarray(at, at + length));
       at += length;
-      await new Promise((resolve) => setTimeout(resolve, behaviour.rate ? (1000 * length) / behaviour.rate : 0));
+      await sent(length);
     }
     response.end();
     answered.emit('answer');

@@ -36,7 +36,7 @@ struct CompactOptions {
   int texture_bits = 12;            ///< of texture coordinates, over their box, 2 to 24
   int weight_bits = 8;              ///< of joints' weights, 2 to 24; those of a wedge add up to 1
   int other_bits = 12;              ///< of other floats, over theirs, 2 to 24; integers stay as they are
-  bool lossless = false;            ///< keep floats bit for bit, beyond those grids, at several times the bytes
+  bool lossless = false;            ///< keep floats bit for bit, beyond those grids, at two to four times the bytes
   Progress progress;
 };
 

@@ -48,7 +48,7 @@ struct BuildOptions {
   Placement placement = Placement::Optimised;  ///< of each level but the first, and of those of a compact stream
   FileLayout layout = FileLayout::OneFile;
   bool stream = true;  ///< write each mesh's removal stream, with all levels in one file
-  /// Keep the streams' floats, bit for bit, at two to three times their size; none of their levels are placed. So do
+  /// Keep the streams' floats, bit for bit, at two to four times their size; none of their levels are placed. So do
   /// streams of what needs more than 16 bits for a position and, with all levels in one file, of what is not compressed
   /// or has a grid of a given step.
   bool lossless = false;
