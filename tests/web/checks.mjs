@@ -3,7 +3,6 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { dirname, extname, join } from 'node:path';
 import validator from 'gltf-validator';
-import { withPage } from './browser.mjs';
 import { lodChains, readDocument, trianglesOfAccessors } from './glb.mjs';
 
 const severityOfInfos = 2; // errors are 0, warnings 1
@@ -112,52 +111,45 @@ export async function extrasAgree(asset) {
   return triangles(asset.levels).join(' ');
 }
 
-async function openThree(site, asset, job) {
-  return withPage(site.browser, `${site.address}/pages/three.html?three.js`, async (page) => {
-    const nodes = asset.levels.map((level) => level.node);
-    const loaded = await page.evaluate(([url, ids, compression]) => window.loadLevels(url, ids, compression),
-      [asset.url, nodes, asset.compression]);
-    return job(page, loaded);
-  });
+async function loadInThree(pages, asset) {
+  const nodes = asset.levels.map((level) => level.node);
+  return pages.levels.ask((choice) => window.loadLevels(...choice), [asset.url, nodes, asset.compression]);
 }
 
 /** three.js shows the finest level by default and loads every other; without Draco it has no decoder at hand. */
-export async function opensInThree(site, asset) {
-  return openThree(site, asset, async (page, loaded) => {
-    assert.deepEqual(loaded.levels, triangles(asset.levels));
-    assert.equal(loaded.scene, asset.levels[0].triangles);
-    return loaded.levels.join(' ');
-  });
+export async function opensInThree(pages, asset) {
+  const loaded = await loadInThree(pages, asset);
+  assert.deepEqual(loaded.levels, triangles(asset.levels));
+  assert.equal(loaded.scene, asset.levels[0].triangles);
+  return loaded.levels.join(' ');
 }
 
 /** Pictures of the levels, for a person to look at. */
-export async function takesPictures(site, asset) {
-  return openThree(site, asset, async (page) => {
-    for (let level = 0; level < asset.levels.length; ++level) {
-      await page.evaluate((number) => window.drawLevel(number), level);
-      await page.locator('canvas').screenshot({ path: join(site.output, `${asset.name}-level-${level}.png`) });
-    }
-    return `${asset.name}-level-*.png`;
-  });
+export async function takesPictures(pages, site, asset) {
+  await loadInThree(pages, asset);
+  for (let level = 0; level < asset.levels.length; ++level) {
+    await pages.levels.ask((number) => window.drawLevel(number), level);
+    await pages.levels.page.locator('canvas').screenshot({ path: join(site.output, `${asset.name}-level-${level}.png`) });
+  }
+  return `${asset.name}-level-*.png`;
 }
 
-async function openBabylon(site, url, useRangeRequests) {
-  return withPage(site.browser, `${site.address}/pages/babylon.html`, (page) =>
-    page.evaluate(([file, ranges]) => window.loadProgressively(file, ranges), [url, useRangeRequests]));
+async function loadInBabylon(pages, url, useRangeRequests) {
+  return pages.babylon.ask((choice) => window.loadProgressively(...choice), [url, useRangeRequests]);
 }
 
 /** Babylon.js loads every level and ends with the finest. With the whole file at hand, levels may pass before it tells. */
-export async function opensInBabylon(site, asset) {
-  const { shown, last } = await openBabylon(site, asset.url, false);
+export async function opensInBabylon(pages, asset) {
+  const { shown, last } = await loadInBabylon(pages, asset.url, false);
   assert.equal(shown.length, asset.levels.length);
   assert.equal(last, asset.levels[0].triangles);
   return `${last} after ${shown.length} levels`;
 }
 
 /** Read by byte ranges it shows level after level, coarsest first, and reads the file from front to back, no byte twice. */
-export async function opensInBabylonByRanges(site, asset) {
+export async function opensInBabylonByRanges(pages, site, asset) {
   site.ranges.length = 0;
-  const { shown } = await openBabylon(site, asset.url, true);
+  const { shown } = await loadInBabylon(pages, asset.url, true);
   assert.deepEqual(shown, triangles(asset.levels).reverse());
   const requests = site.ranges.filter((range) => range.path === asset.path);
   assert.ok(requests.length > asset.levels.length, `only ${requests.length} requests`);

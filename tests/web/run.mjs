@@ -14,14 +14,14 @@ async function describe(site, path) {
 }
 
 /** Returns the checks of a one-mesh asset, by name. */
-function checksOfMesh(checks, site, asset) {
+function checksOfMesh(checks, pages, site, asset) {
   return {
     'gltf-validator': () => checks.validates(asset),
     'extras': () => checks.extrasAgree(asset),
-    [`three.js, ${asset.compression}`]: () => checks.opensInThree(site, asset),
-    'Babylon.js': () => checks.opensInBabylon(site, asset),
-    'Babylon.js by byte ranges': () => checks.opensInBabylonByRanges(site, asset),
-    'pictures': () => checks.takesPictures(site, asset),
+    [`three.js, ${asset.compression}`]: () => checks.opensInThree(pages, asset),
+    'Babylon.js': () => checks.opensInBabylon(pages, asset),
+    'Babylon.js by byte ranges': () => checks.opensInBabylonByRanges(pages, site, asset),
+    'pictures': () => checks.takesPictures(pages, site, asset),
   };
 }
 
@@ -44,14 +44,14 @@ async function main() {
   const site = await openSite({ ...options, assets: given.length > 0 ? dirname(given[0]) : options.output });
   const checks = await import('./checks.mjs');
   const viewers = await import('./viewers.mjs');
+  const pages = await viewers.openViewers(site);
   const log = new Log();
   const planned = given.length > 0 ? [] : planAssets(options);
   const meshes = planned.filter(({ kind }) => kind === 'mesh').map(({ path }) => path);
   for (const path of [...given, ...meshes]) {
     const asset = await describe(site, path);
-    await log.run(asset.name, checksOfMesh(checks, site, asset));
+    await log.run(asset.name, checksOfMesh(checks, pages, site, asset));
   }
-  const pages = await viewers.openViewers(site);
   for (const asset of planned.filter(({ kind }) => kind === 'scene')) {
     await log.run(asset.name, checksOfScene(checks, viewers, pages, { ...asset, url: site.url(asset.path) }));
   }

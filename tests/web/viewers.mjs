@@ -6,6 +6,7 @@ import { readDocument, trianglesOfScene } from './glb.mjs';
 /** Opens one page of each viewer for many files: the viewers themselves take longer to load than most files. */
 export async function openViewers(site) {
   return {
+    levels: await openPage(site.browser, `${site.address}/pages/three.html?three.js`),
     three: await openPage(site.browser, `${site.address}/pages/three.html?viewer.js`),
     babylon: await openPage(site.browser, `${site.address}/pages/babylon.html`),
     babylonViewer: await openPage(site.browser, `${site.address}/pages/babylon-viewer.html`),
@@ -44,7 +45,9 @@ export async function streamsInBabylon(viewers, asset) {
 
 const largestDifference = 2; // of 255, in the mean: two drawings of the same
 
-function meanDifference(a, b) {
+function meanDifference(...pictures) {
+  const [a, b] = pictures.map((text) => Buffer.from(text, 'base64'));
+  assert.ok(a.length > 0 && a.length === b.length);
   return a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
 }
 

@@ -69,6 +69,15 @@ const ways = {
   container: async (url, scene) => (await BABYLON.SceneLoader.LoadAssetContainerAsync('', url, scene)).addAllToScene(),
 };
 
+/** Returns bytes as base64: a page's answer is taken apart number by number, which of a picture takes long. */
+async function toText(bytes) {
+  const reader = new FileReader();
+  const done = new Promise((resolve) => { reader.onload = resolve; });
+  reader.readAsDataURL(new Blob([bytes]));
+  await done;
+  return reader.result.split(',')[1];
+}
+
 function shownMeshes(scene) {
   return scene.meshes.filter((mesh) => mesh.isEnabled() && mesh.getTotalIndices() > 0);
 }
@@ -91,7 +100,7 @@ window.drawLoaded = async (url, way) => {
       triangles: countTriangles(scene),
       bare: shownMeshes(scene).filter(({ material }) => !material).length,
       textures: textures.map((texture) => texture.isReady()),
-      pixels: Array.from(await engine.readPixels(0, 0, engine.getRenderWidth(), engine.getRenderHeight())),
+      pixels: await toText(await engine.readPixels(0, 0, engine.getRenderWidth(), engine.getRenderHeight())),
     };
   } finally {
     scene.dispose();
