@@ -1,11 +1,13 @@
 // Shows a file in what <babylon-viewer> is made of. Its decoder comes from the network: only for files without Draco.
 import { CreateViewerForCanvas } from '/node_modules/@babylonjs/viewer/dist/babylon-viewer.esm.min.js';
 
-let scene;
+let details;
 const canvas = document.getElementById('canvas');
 const viewer = await CreateViewerForCanvas(canvas, {
-  engine: 'WebGL', environmentLighting: undefined, onInitialized: (details) => { scene = details.scene; },
+  engine: 'WebGL', environmentLighting: undefined, onInitialized: (given) => { details = given; },
 });
+const { scene } = details;
+let rest = details.suspendRendering(); // between files: it would go on drawing animations, in software
 
 const patience = 20_000; // milliseconds
 
@@ -24,11 +26,16 @@ const countTriangles = () => shownMeshes().reduce((sum, mesh) => sum + mesh.getT
 
 /** Loads a file; returns the triangles that are shown, and of each mesh's material the textures by whether they are there. */
 window.showInViewer = async (url, triangles) => {
-  await viewer.loadModel(url);
-  await waitUntil(() => countTriangles() === triangles);
-  const textures = () => shownMeshes().flatMap(({ material }) => material?.getActiveTextures() ?? []);
-  await waitUntil(() => textures().every((texture) => texture.isReady()));
-  return { triangles: countTriangles(), textures: textures().map((texture) => texture.isReady()) };
+  rest.dispose();
+  try {
+    await viewer.loadModel(url);
+    await waitUntil(() => countTriangles() === triangles);
+    const textures = () => shownMeshes().flatMap(({ material }) => material?.getActiveTextures() ?? []);
+    await waitUntil(() => textures().every((texture) => texture.isReady()));
+    return { triangles: countTriangles(), textures: textures().map((texture) => texture.isReady()) };
+  } finally {
+    rest = details.suspendRendering();
+  }
 };
 
 window.ready = true;
