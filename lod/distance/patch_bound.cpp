@@ -161,15 +161,16 @@ PatchBound::Points PatchBound::project(const Frame& frame, Index face) const {
           frame.project(surface_.corner_position(3 * face + 2))};
 }
 
-/// Whether the face is in the patch, which it joins if it is over or under the triangle.
-bool PatchBound::add_if_over(const Frame& frame, Index face) {
-  return was_tested(face) ? state_[face] % 2 != 0 : add_tested(frame, face, project(frame, face));
+/// What the face is to the triangle; it joins the patch if it is over or under it, and not too high.
+PatchBound::Standing PatchBound::add_if_over(const Frame& frame, Index face) {
+  return was_tested(face) ? standing(face) : add_tested(frame, face, project(frame, face));
 }
 
 /// The same for the face of the corner `other`, two of whose corners are known: those of its edge.
-bool PatchBound::add_across(const Frame& frame, Index other, const Point& at_other, const Point& after_other) {
+PatchBound::Standing PatchBound::add_across(const Frame& frame, Index other, const Point& at_other,
+                                            const Point& after_other) {
   const Index face = face_of_corner(other);
-  if (was_tested(face)) return state_[face] % 2 != 0;
+  if (was_tested(face)) return standing(face);
   Points points;
   points[other % 3] = at_other;
   points[next_corner(other) % 3] = after_other;
@@ -177,18 +178,27 @@ bool PatchBound::add_across(const Frame& frame, Index other, const Point& at_oth
   return add_tested(frame, face, points);
 }
 
-bool PatchBound::add_tested(const Frame& frame, Index face, const Points& points) {
-  const bool over = !separated(frame, points);
-  state_[face] = 2 * run_ + over;
-  if (!over) return false;
+PatchBound::Standing PatchBound::add_tested(const Frame& frame, Index face, const Points& points) {
+  const Standing standing = judge(frame, points);
+  state_[face] = kStandings * run_ + static_cast<std::uint32_t>(standing);
+  if (standing != Standing::InPatch) return standing;
   patch_.push_back(face);
   points_.push_back(points);
-  return true;
+  return standing;
+}
+
+PatchBound::Standing PatchBound::judge(const Frame& frame, const Points& points) {
+  if (separated(frame, points)) return Standing::Apart;
+  double height = std::max({std::abs(points[0].height), std::abs(points[1].height), std::abs(points[2].height)});
+  if (height > limit_) height = clipped_height(points);
+  if (height > limit_) return Standing::TooHigh;
+  height_ = std::max(height_, height);
+  return Standing::InPatch;
 }
 
 /// Starts the patch with a face, or where that is not over the triangle with one of those around it.
 void PatchBound::start_patch(const Frame& frame, Index start) {
-  if (add_if_over(frame, start)) return;
+  if (add_if_over(frame, start) == Standing::InPatch) return;
   for (Index corner = 3 * start; corner < 3 * start + 3; ++corner) {
     if (start_in_star(frame, corner)) return;
   }
@@ -199,7 +209,7 @@ bool PatchBound::start_in_star(const Frame& frame, Index corner) {
   for (Index c = opposite_[corner]; c != kNoIndex; c = opposite_[c]) {
     c = next_corner(c);
     if (c == corner) return false;
-    if (add_if_over(frame, face_of_corner(c))) return true;
+    if (add_if_over(frame, face_of_corner(c)) == Standing::InPatch) return true;
   }
   return false;
 }
@@ -211,8 +221,10 @@ bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& poi
   for (Index i = 0; i < 3; ++i) {
     const Index j = (i + 1) % 3;
     const Index other = opposite_[3 * face + i];
-    if (other != kNoIndex && add_across(frame, other, points[j], points[i])) continue;
-    if (other == kNoIndex && !separated(frame, {points[i], points[j], points[j]})) return false;
+    const Standing beyond = other == kNoIndex ? Standing::TooHigh : add_across(frame, other, points[j], points[i]);
+    if (beyond == Standing::InPatch) continue;
+    // A face apart from the triangle has edges that are, too.
+    if (beyond != Standing::Apart && !separated(frame, {points[i], points[j], points[j]})) return false;
     winding += crossing(points[i], points[j], centre);
   }
   return true;
@@ -224,18 +236,16 @@ double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, doubl
   ++run_;
   Frame frame;
   if (!make_frame(triangle, slack, frame)) return kNone;
+  limit_ = target - slack;
+  height_ = 0;
   start_patch(frame, start);
   const Point centre{0, 0, 0, {}};
-  double height = 0;
   int winding = 0;
   for (std::size_t i = 0; i < patch_.size(); ++i) {
     const Points points = points_[i];
-    double face_height = std::max({std::abs(points[0].height), std::abs(points[1].height), std::abs(points[2].height)});
-    if (face_height + slack > target) face_height = clipped_height(points);
-    height = std::max(height, face_height);
-    if (height + slack > target || !visit_outline(frame, patch_[i], points, centre, winding)) return kNone;
+    if (!visit_outline(frame, patch_[i], points, centre, winding)) return kNone;
   }
-  return winding != 0 ? height + slack : kNone;
+  return winding != 0 ? height_ + slack : kNone;
 }
 
 }  // namespace lodestone::detail

@@ -15,10 +15,11 @@ std::vector<Index> opposite_corners(const Mesh& mesh);
 
 /// Bounds the distance from a triangle to a surface by showing that the surface spans it.
 ///
-/// Take the faces that lie over or under the triangle, seen along its normal, and hang together. If the outline of that
+/// Take faces that lie over or under the triangle, seen along its normal, and hang together. If the outline of that
 /// patch, projected into the triangle's plane, winds around the triangle without entering it, then every point of the
 /// triangle has a point of the patch right above or below it (the degree of the projection is not 0), and the greatest
-/// height of the patch over the triangle bounds the distance.
+/// height of the patch over the triangle bounds the distance. Which faces do not matter: those that are too high, walls
+/// beyond an edge, are left out.
 class PatchBound {
  public:
   /// Pre: both outlive the object; `opposite` are the surface's opposite_corners.
@@ -56,11 +57,16 @@ class PatchBound {
   static double clipped_height(const Points& subject);
   static int crossing(const Point& p, const Point& q, const Point& centre);
 
+  /// What a face is to the triangle: not over or under it, part of the patch, or too high over it for that.
+  enum class Standing : std::uint32_t { Apart, InPatch, TooHigh };
+
   Points project(const Frame& frame, Index face) const;
-  bool add_if_over(const Frame& frame, Index face);
-  bool add_across(const Frame& frame, Index other, const Point& at_other, const Point& after_other);
-  bool add_tested(const Frame& frame, Index face, const Points& points);
-  bool was_tested(Index face) const { return state_[face] / 2 == run_; }
+  Standing add_if_over(const Frame& frame, Index face);
+  Standing add_across(const Frame& frame, Index other, const Point& at_other, const Point& after_other);
+  Standing add_tested(const Frame& frame, Index face, const Points& points);
+  Standing judge(const Frame& frame, const Points& points);
+  bool was_tested(Index face) const { return state_[face] / kStandings == run_; }
+  Standing standing(Index face) const { return static_cast<Standing>(state_[face] % kStandings); }
   void start_patch(const Frame& frame, Index start);
   bool start_in_star(const Frame& frame, Index corner);
   bool visit_outline(const Frame& frame, Index face, const Points& points, const Point& centre, int& winding);
@@ -68,9 +74,13 @@ class PatchBound {
   const Mesh& surface_;
   std::span<const Index> opposite_;
   std::vector<Index> patch_;
+  static constexpr std::uint32_t kStandings = 3;
+
   std::vector<Points> points_;        // Of the patch's faces.
-  std::vector<std::uint32_t> state_;  // Per face: 2·run_ if tested in this run, + 1 if in the patch.
+  std::vector<std::uint32_t> state_;  // Per face: kStandings·run_ + its standing if tested in this run.
   std::uint32_t run_ = 0;
+  double limit_ = 0;   // That heights may have in this run.
+  double height_ = 0;  // Of the patch.
 };
 
 }  // namespace lodestone::detail
