@@ -39,6 +39,7 @@ using detail::PatchBound;
 using detail::sorted_edges;
 using detail::SupremumSearch;
 using detail::SurfaceBounds;
+using detail::TargetSurface;
 
 constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's default.
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
@@ -189,6 +190,23 @@ class Samples {
   Counts counts_;
 };
 
+/// Whether two meshes have the same vertices, by number, at their faces' corners: only where these lie may differ.
+bool have_same_faces(const Mesh& a, const Mesh& b) {
+  return a.vertex_count() == b.vertex_count() && a.corner_wedge == b.corner_wedge && a.wedge_vertex == b.wedge_vertex;
+}
+
+/// What is known where the faces are the same: no point is farther than the corners of its face have moved.
+SurfaceBounds bounds_by_correspondence(const Mesh& from, const Mesh& to) {
+  SurfaceBounds bounds(from, false);
+  for (Index corner = 0; corner < from.corner_wedge.size(); ++corner) {
+    const Index face = face_of_corner(corner);
+    const double moved = length(from.corner_position(corner) - to.corner_position(corner));
+    bounds.faces[face] = corner % 3 == 0 ? moved : std::max(bounds.faces[face], moved);
+    bounds.vertices[from.corner_vertex(corner)] = {moved, face, false};
+  }
+  return bounds;
+}
+
 /// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
 class Tally {
  public:
@@ -204,6 +222,7 @@ class Tally {
   /// cancelled.
   void finish(ProgressSteps& steps) {
     const std::vector<Index> order = along_surface();
+    const bool correspond = have_same_faces(from_.mesh, to_.mesh);
     std::vector<Vec3> points;
     std::vector<SurfaceIndex::Hit> hits;
     for (std::size_t first = 0; first < order.size(); first += points.size()) {
@@ -211,6 +230,7 @@ class Tally {
       for (std::size_t i = first; i < std::min(first + kSamplesOfStep, order.size()); ++i)
         points.push_back(points_[order[i]]);
       hits.assign(points.size(), {0, {}, kNoIndex, 0});
+      for (std::size_t i = 0; correspond && i < hits.size(); ++i) hits[i].face = on_faces_[order[first + i]];
       to_.index.nearest(points, hits);
       for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!steps.next()) return;
@@ -294,9 +314,11 @@ constexpr std::size_t kScouted = 1000;
 /// Narrows one direction's maximum on its own; leaves mean and rms as they are.
 void narrow_maximum(const Surface& from, const Surface& to, const DeviationOptions& options, Goal goal,
                     OneSidedDeviation& result) {
-  SurfaceBounds bounds(from.mesh, false);
+  SurfaceBounds bounds = have_same_faces(from.mesh, to.mesh) ? bounds_by_correspondence(from.mesh, to.mesh)
+                                                             : SurfaceBounds(from.mesh, false);
+  TargetSurface to_surface(to.mesh, to.opposite, to.index);
   PatchBound to_patch(to.mesh, to.opposite);
-  SupremumSearch search(from.mesh, to.index, to_patch, bounds);
+  SupremumSearch search(from.mesh, to_surface, to_patch, bounds);
   search.scout(kScouted, goal);
   search.visit_vertices(goal);
   search.split_faces(goal, options.budget);
@@ -368,9 +390,10 @@ Deviation measure_maximum(const MeasuredSurface& first, const MeasuredSurface& s
   const Surface &a = first.impl(), &b = second.impl();
   if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return detail::maximum_of_empty(a.mesh, b.mesh);
   SurfaceBounds a_bounds(a.mesh, false), b_bounds(b.mesh, false);
+  TargetSurface a_surface(a.mesh, a.opposite, a.index), b_surface(b.mesh, b.opposite, b.index);
   PatchBound a_patch(a.mesh, a.opposite), b_patch(b.mesh, b.opposite);
-  SupremumSearch forward(a.mesh, b.index, b_patch, a_bounds);
-  SupremumSearch backward(b.mesh, a.index, a_patch, b_bounds);
+  SupremumSearch forward(a.mesh, b_surface, b_patch, a_bounds);
+  SupremumSearch backward(b.mesh, a_surface, a_patch, b_bounds);
   return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), enough),
                              options.budget);
 }

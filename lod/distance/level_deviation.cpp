@@ -24,6 +24,7 @@ using detail::PatchBound;
 using detail::PositionIndex;
 using detail::SupremumSearch;
 using detail::SurfaceBounds;
+using detail::TargetSurface;
 using detail::Triangle;
 using detail::Triple;
 using detail::TripleTable;
@@ -68,6 +69,7 @@ struct LevelDeviation::Impl {
   double diagonal;  // The original's.
   SurfaceIndex index;
   std::vector<Index> opposite;  // Of the original's corners.
+  TargetSurface surface;
   PatchBound patch;
   PositionIndex vertices;  // Of the original.
   TripleTable original_faces;
@@ -87,6 +89,7 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& wanted)
       diagonal(bounding_box(mesh).diagonal()),
       index(mesh),
       opposite(detail::opposite_corners(mesh)),
+      surface(mesh, opposite, index),
       patch(mesh, opposite),
       vertices(mesh.positions),
       original_faces(mesh.face_count()),
@@ -135,7 +138,7 @@ SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
 
 void LevelDeviation::Impl::carry_nearest(const std::vector<Index>& face_now, double moved) {
   for (KnownDistance& known : forward.vertices) {
-    known.exact = false;
+    known.searched = false;
     if (known.face != kNoIndex) known.face = face_now[known.face];
     if (known.face == kNoIndex) known.distance += moved;
   }
@@ -200,12 +203,12 @@ void LevelDeviation::Impl::start(SupremumSearch& forward_search, SupremumSearch&
 }
 
 Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double enough) {
-  const SurfaceIndex level_index(level);
   SurfaceBounds backward = inherit(level, moved);
   const std::vector<Index> level_opposite = detail::opposite_corners(level);
+  TargetSurface level_surface(level, level_opposite);
   PatchBound level_patch(level, level_opposite);
-  SupremumSearch forward_search(original, level_index, level_patch, forward);
-  SupremumSearch backward_search(level, index, patch, backward);
+  SupremumSearch forward_search(original, level_surface, level_patch, forward);
+  SupremumSearch backward_search(level, surface, patch, backward);
   Goal goal = detail::goal_of(options, std::max(diagonal, bounding_box(level).diagonal()), enough);
   start(forward_search, backward_search, goal);
   bound_new_faces(level, goal, backward);

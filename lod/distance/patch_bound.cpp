@@ -72,35 +72,45 @@ PatchBound::PatchBound(const Mesh& surface, std::span<const Index> opposite)
 
 PatchBound::Point PatchBound::Frame::project(const Vec3& p) const {
   const Vec3 d = p - origin;
-  Point point{dot(d, x_axis), dot(d, y_axis), dot(d, normal), {}};
-  for (std::size_t i = 0; i < 3; ++i) point.side[i] = area2(corners[i], corners[(i + 1) % 3], point);
+  Point point{dot(d, x_axis), dot(d, y_axis), dot(d, normal), {}, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    point.side[i] = edges[i].x_factor * point.x + edges[i].y_factor * point.y + edges[i].constant;
+    point.outside |= static_cast<unsigned>(point.side[i] <= 0) << i;
+  }
   return point;
 }
 
 /// Sets up the plane of a triangle; false where it has none.
 bool PatchBound::make_frame(const std::array<Vec3, 3>& triangle, double slack, Frame& frame) {
   const Vec3 centre = (triangle[0] + triangle[1] + triangle[2]) * (1.0 / 3.0);
+  double squared_radius = 0;
+  for (const Vec3& corner : triangle) squared_radius = std::max(squared_radius, squared_length(corner - centre));
+  const double radius = std::sqrt(squared_radius);
   frame.origin = centre;
-  frame.normal = normalized(cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
-  frame.x_axis = normalized(triangle[1] - triangle[0]);
+  frame.x_axis = triangle[1] - triangle[0];
+  frame.normal = normalized(cross(frame.x_axis, triangle[2] - triangle[0]));
   frame.y_axis = cross(frame.normal, frame.x_axis);
-  double radius = 0;
-  for (const Vec3& corner : triangle) radius = std::max(radius, length(corner - centre));
   if (!(squared_length(frame.normal) > 0) || !(radius > slack)) return false;
   const double shrink = 1 - slack / radius;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 d = (triangle[i] - centre) * shrink;
     frame.corners[i] = {dot(d, frame.x_axis), dot(d, frame.y_axis)};
   }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Frame::Corner &p = frame.corners[i], &q = frame.corners[(i + 1) % 3];
+    frame.edges[i] = {p.y - q.y, q.x - p.x, p.x * q.y - q.x * p.y};
+  }
   return true;
 }
 
 /// Whether a line along an edge of `other` or of the triangle keeps the two apart.
 bool PatchBound::separated(const Frame& frame, const Points& other) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (other[0].side[i] <= 0 && other[1].side[i] <= 0 && other[2].side[i] <= 0) return true;
-  for (const Point& p : other)
-    if (p.side[0] > 0 && p.side[1] > 0 && p.side[2] > 0) return false;
+  if ((other[0].outside & other[1].outside & other[2].outside) != 0) return true;
+  if (other[0].outside == 0 || other[1].outside == 0 || other[2].outside == 0) return false;
+  return edge_separates(frame, other);
+}
+
+bool PatchBound::edge_separates(const Frame& frame, const Points& other) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Point& p = other[i];
     const Point& q = other[(i + 1) % 3];
@@ -147,12 +157,13 @@ double PatchBound::clipped_height(const Points& subject) {
   return height;
 }
 
-/// How the edge from p to q passes the ray from `centre` along x: 1 upwards, −1 downwards, 0 not at all.
-int PatchBound::crossing(const Point& p, const Point& q, const Point& centre) {
-  const bool p_below = p.y <= centre.y;
-  const bool q_below = q.y <= centre.y;
+/// How the edge from p to q passes the ray along x from the origin, the triangle's centre: 1 upwards, −1 downwards, 0
+/// not at all.
+int PatchBound::crossing(const Point& p, const Point& q) {
+  const bool p_below = p.y <= 0;
+  const bool q_below = q.y <= 0;
   if (p_below == q_below) return 0;
-  const bool left = area2(p, q, centre) > 0;
+  const bool left = p.x * q.y - p.y * q.x > 0;
   return p_below ? (left ? 1 : 0) : (left ? 0 : -1);
 }
 
@@ -216,8 +227,7 @@ bool PatchBound::start_in_star(const Frame& frame, Index corner) {
 
 /// Grows the patch across the face's edges; where an edge is part of the outline, checks it and adds up the winding.
 /// False where the outline enters the triangle.
-bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& points, const Point& centre,
-                               int& winding) {
+bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& points, int& winding) {
   for (Index i = 0; i < 3; ++i) {
     const Index j = (i + 1) % 3;
     const Index other = opposite_[3 * face + i];
@@ -225,7 +235,7 @@ bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& poi
     if (beyond == Standing::InPatch) continue;
     // A face apart from the triangle has edges that are, too.
     if (beyond != Standing::Apart && !separated(frame, {points[i], points[j], points[j]})) return false;
-    winding += crossing(points[i], points[j], centre);
+    winding += crossing(points[i], points[j]);
   }
   return true;
 }
@@ -239,11 +249,10 @@ double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, doubl
   limit_ = target - slack;
   height_ = 0;
   start_patch(frame, start);
-  const Point centre{0, 0, 0, {}};
   int winding = 0;
   for (std::size_t i = 0; i < patch_.size(); ++i) {
     const Points points = points_[i];
-    if (!visit_outline(frame, patch_[i], points, centre, winding)) return kNone;
+    if (!visit_outline(frame, patch_[i], points, winding)) return kNone;
   }
   return winding != 0 ? height_ + slack : kNone;
 }

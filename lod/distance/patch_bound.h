@@ -33,11 +33,13 @@ class PatchBound {
   std::span<const Index> patch() const { return patch_; }
 
  private:
-  /// A point in a triangle's frame: x and y in its plane, its height over it, and the triangle's edges seen from there:
-  /// twice the area with each, positive inside.
+  /// A point in a triangle's frame: x and y in its plane, in a unit of their own, its height over it, and the
+  /// triangle's edges seen from there: twice the area with each in that unit, positive inside. Bit i: not inside of
+  /// edge i.
   struct Point {
     double x, y, height;
     std::array<double, 3> side;
+    unsigned outside;
   };
   using Points = std::array<Point, 3>;
 
@@ -46,16 +48,22 @@ class PatchBound {
     struct Corner {
       double x, y;
     };
+    /// What grows with the distance from an edge: x_factor·x + y_factor·y + constant.
+    struct Edge {
+      double x_factor, y_factor, constant;
+    };
     Vec3 origin, x_axis, y_axis, normal;
     std::array<Corner, 3> corners;
+    std::array<Edge, 3> edges;
 
     Point project(const Vec3& p) const;
   };
 
   static bool make_frame(const std::array<Vec3, 3>& triangle, double slack, Frame& frame);
   static bool separated(const Frame& frame, const Points& other);
+  static bool edge_separates(const Frame& frame, const Points& other);
   static double clipped_height(const Points& subject);
-  static int crossing(const Point& p, const Point& q, const Point& centre);
+  static int crossing(const Point& p, const Point& q);
 
   /// What a face is to the triangle: not over or under it, part of the patch, or too high over it for that.
   enum class Standing : std::uint32_t { Apart, InPatch, TooHigh };
@@ -69,7 +77,7 @@ class PatchBound {
   Standing standing(Index face) const { return static_cast<Standing>(state_[face] % kStandings); }
   void start_patch(const Frame& frame, Index start);
   bool start_in_star(const Frame& frame, Index corner);
-  bool visit_outline(const Frame& frame, Index face, const Points& points, const Point& centre, int& winding);
+  bool visit_outline(const Frame& frame, Index face, const Points& points, int& winding);
 
   const Mesh& surface_;
   std::span<const Index> opposite_;

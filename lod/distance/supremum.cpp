@@ -43,6 +43,10 @@ bool all_near_faces(const Corners& c) {
   return c[0].face != kNoIndex && c[1].face != kNoIndex && c[2].face != kNoIndex;
 }
 
+bool two_share_face(const Corners& c) {
+  return c[0].face == c[1].face || c[1].face == c[2].face || c[2].face == c[0].face;
+}
+
 /// The bound where one face is known to be near all corners; infinity elsewhere.
 double bound_by_same_face(const Corners& c) {
   const bool same = c[0].face != kNoIndex && c[0].face == c[1].face && c[0].face == c[2].face;
@@ -58,7 +62,7 @@ double zero_between(double from, double towards) {
 /// An upper bound of the distances from a part to a surface; every face tried can only lower it.
 class PieceBound {
  public:
-  PieceBound(const Corners& corners, const SurfaceIndex& to, double target)
+  PieceBound(const Corners& corners, const TargetSurface& to, double target)
       : corners_(corners), to_(to), target_(target), value_(bound_by_length(corners)) {}
 
   double value() const { return value_; }
@@ -106,7 +110,7 @@ class PieceBound {
   }
 
   const Corners& corners_;
-  const SurfaceIndex& to_;
+  const TargetSurface& to_;
   double target_;
   double value_;
   std::size_t count_ = 0;
@@ -127,7 +131,7 @@ void SurfaceBounds::lower(Index face, double bound, std::span<const Index> found
   std::copy(found.begin(), found.end(), witness.faces.begin());
 }
 
-SupremumSearch::SupremumSearch(const Mesh& from, const SurfaceIndex& to, PatchBound& to_patch, SurfaceBounds& bounds)
+SupremumSearch::SupremumSearch(const Mesh& from, TargetSurface& to, PatchBound& to_patch, SurfaceBounds& bounds)
     : from_(from), to_(to), to_patch_(to_patch), bounds_(bounds) {}
 
 void SupremumSearch::scout(std::size_t count, Goal& goal) {
@@ -152,12 +156,18 @@ void SupremumSearch::visit_face(Index face, Goal& goal) {
     const std::array<Index, 3> nearest = {corners[0].face, corners[1].face, corners[2].face};
     bounds_.lower(face, std::min(bound_by_length(corners), bound_by_same_face(corners)), nearest);
     if (!all_near_faces(corners)) continue;
+    // Two faces often do, three seldom: then the patch, which is dearer, is tried first.
+    bool corners_tried = false;
+    if (is_open(face, goal) && !patch_tried && two_share_face(corners)) {
+      bounds_.lower(face, bound_by_corners(corners, goal), nearest);
+      corners_tried = true;
+    }
     if (is_open(face, goal) && !patch_tried) {
       patch_tried = true;
       const double bound = bound_by_patch(corners, goal);
       bounds_.lower(face, bound, to_patch_.patch());
     }
-    if (is_open(face, goal)) bounds_.lower(face, bound_by_corners(corners, goal), nearest);
+    if (is_open(face, goal) && !corners_tried) bounds_.lower(face, bound_by_corners(corners, goal), nearest);
   } while (is_open(face, goal) && query_one_vertex(face, goal));
 }
 
@@ -167,9 +177,10 @@ double SupremumSearch::bound_by_corners(const Corners& corners, const Goal& goal
   return bound.value();
 }
 
-/// Pre: the first corner is near a face.
+/// Starts where two corners are near one face, if so: it is seldom beside the part. Pre: all corners are near faces.
 double SupremumSearch::bound_by_patch(const Corners& c, const Goal& goal) {
-  return to_patch_.bound({c[0].point, c[1].point, c[2].point}, c[0].face, goal.threshold(), goal.patch_slack());
+  const Index start = c[1].face == c[2].face ? c[1].face : c[0].face;
+  return to_patch_.bound({c[0].point, c[1].point, c[2].point}, start, goal.threshold(), goal.patch_slack());
 }
 
 /// Finds the nearest face of one of the face's vertices, first of those that know none; false where all are known.
@@ -180,7 +191,7 @@ bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
     const Index v = from_.corner_vertex(corner);
     const KnownDistance& known = bounds_.vertices[v];
     if (known.face != kNoIndex) hint = known.face;
-    if (known.exact) continue;
+    if (known.searched) continue;
     if (vertex == kNoIndex || known.face == kNoIndex) vertex = v;
   }
   if (vertex == kNoIndex) return false;
@@ -189,14 +200,19 @@ bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
   return true;
 }
 
+/// Only a point that may be the farthest of all needs the nearest face: for all others one that is near enough will do.
 PartCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
-  const SurfaceIndex::Hit hit = to_.nearest(point, kUnbounded, hint);
-  const PartCorner corner{point, hit.distance, hit.face};
-  if (hit.distance > largest_distance_) {
-    assume(from_face, hit.distance, goal);
+  if (hint != kNoIndex) {
+    const TargetSurface::Near found = to_.near(point, hint);
+    if (found.distance <= goal.found) return {point, found.distance, found.face};
+    hint = found.face;
+  }
+  const TargetSurface::Near nearest = to_.nearest(point, hint);
+  if (nearest.distance > largest_distance_) {
+    assume(from_face, nearest.distance, goal);
     farthest_point_ = point;
   }
-  return corner;
+  return {point, nearest.distance, nearest.face};
 }
 
 void SupremumSearch::assume(Index face, double distance, Goal& goal) {

@@ -12,6 +12,7 @@
 #include <lodestone/lod/deviation.h>
 
 #include "distance/patch_bound.h"
+#include "distance/target_surface.h"
 
 namespace lodestone::detail {
 
@@ -40,9 +41,9 @@ Goal goal_of(const DeviationOptions& options, double diagonal, double enough);
 
 /// A point of one surface and what is known of its distance to the other.
 struct KnownDistance {
-  double distance = kUnbounded;  ///< an upper bound; to `face` precisely, where there is one
-  Index face = kNoIndex;         ///< a face of the other surface at that distance
-  bool exact = false;            ///< that face is the nearest
+  double distance = kUnbounded;  ///< an upper bound; of the distance to `face`, too, where there is one
+  Index face = kNoIndex;         ///< a face of the other surface no farther than that
+  bool searched = false;         ///< no nearer face need be looked for
 };
 
 /// The faces of the other surface that a bound rests on; it holds for as long as all of them exist. None: unknown.
@@ -79,10 +80,13 @@ struct PartCorner {
 class SupremumSearch {
  public:
   /// All arguments outlive the search; `to` and `to_patch` are of one surface, which is not empty.
-  SupremumSearch(const Mesh& from, const SurfaceIndex& to, PatchBound& to_patch, SurfaceBounds& bounds);
+  SupremumSearch(const Mesh& from, TargetSurface& to, PatchBound& to_patch, SurfaceBounds& bounds);
 
   /// Queries about so many vertices, spread over the mesh's faces, so that the goal is near what it will be.
   void scout(std::size_t count, Goal& goal);
+  /// Lowers the bounds of faces that lie together at once, where all of them are as good as flat: `index` is the
+  /// mesh's.
+  void visit_runs(const SurfaceIndex& index, Goal& goal);
   /// Lowers the faces' bounds as far as the goal asks and queries at vertices can.
   void visit_vertices(Goal& goal);
   /// Splits faces until all bounds meet the goal or `budget` parts were halved.
@@ -124,7 +128,7 @@ class SupremumSearch {
   Part pop();
 
   const Mesh& from_;
-  const SurfaceIndex& to_;
+  TargetSurface& to_;
   PatchBound& to_patch_;
   SurfaceBounds& bounds_;
   double largest_distance_ = 0;

@@ -98,6 +98,39 @@ Mesh zigzag_disc(int n) {
   return turned(raw_mesh(std::move(positions), std::move(corners)));
 }
 
+/// Two square sheets that meet at an edge, each of n × n cells; `angle` lies between them, radians.
+Mesh folded_sheet(int n, double angle) {
+  std::vector<Vec3f> positions;
+  std::vector<Index> corners;
+  for (int j = -n; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const double along = std::abs(j) / static_cast<double>(n), turned = j < 0 ? angle : 0;
+      positions.push_back({static_cast<float>(i) / static_cast<float>(n), static_cast<float>(along * std::cos(turned)),
+                           static_cast<float>(along * std::sin(turned))});
+    }
+  const auto at = [n](int i, int j) { return static_cast<Index>((j + n) * (n + 1) + i); };
+  for (int j = -n; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      corners.insert(corners.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      corners.insert(corners.end(), {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return raw_mesh(std::move(positions), std::move(corners));
+}
+
+/// The mesh with each coordinate rounded to a multiple of `step`.
+Mesh rounded(Mesh mesh, float step) {
+  for (Vec3f& p : mesh.positions) {
+    p = {std::round(p.x / step) * step, std::round(p.y / step) * step, std::round(p.z / step) * step};
+  }
+  return mesh;
+}
+
+/// The mesh, its last face first.
+Mesh rotated_faces(Mesh mesh) {
+  std::rotate(mesh.corner_wedge.begin(), mesh.corner_wedge.end() - 3, mesh.corner_wedge.end());
+  return mesh;
+}
+
 /// The mesh several times over, each time moved up by `step`.
 Mesh stacked(const Mesh& mesh, int count, float step) {
   std::vector<Vec3f> positions;
@@ -381,6 +414,34 @@ TEST_CASE("a flat sheet costs few queries however its triangles lie") {
   options.budget = 2000;
   const Deviation deviation = measure_maximum(MeasuredSurface(fine), MeasuredSurface(coarse), options);
   CHECK(deviation.maximum_bound() <= allowed(0, options, bounding_box(fine).diagonal()) + 1e-7);
+}
+
+TEST_CASE("an edge costs few queries however sharp it is") {
+  for (const double angle : {0.1, 0.5, 1.2, 1.6, 2.5}) {
+    INFO("sheets at " << angle);
+    const Mesh fine = folded_sheet(23, angle), coarse = folded_sheet(6, angle);
+    DeviationOptions options;
+    options.budget = 500;
+    const Deviation deviation = measure_maximum(MeasuredSurface(fine), MeasuredSurface(coarse), options);
+    CHECK(deviation.maximum_bound() <= allowed(0, options, bounding_box(fine).diagonal()) + 1e-6);
+  }
+}
+
+TEST_CASE("that faces correspond makes no difference to what is measured") {
+  for (const NamedShape& shape : all_shapes()) {
+    const Mesh mesh = mesh_of(shape.soup);
+    if (mesh.face_count() < 2) continue;
+    INFO(shape.name);
+    const double diagonal = bounding_box(mesh).diagonal();
+    for (const double step : {1e-3, 0.2}) {
+      const Mesh same = rounded(mesh, static_cast<float>(step * diagonal)), other = rotated_faces(same);
+      const Deviation with = measure_deviation(mesh, same), without = measure_deviation(mesh, other);
+      CHECK(overlap(with, without));
+      CHECK(with.maximum_bound() <= allowed(with.maximum(), {}, diagonal));
+      CHECK(with.forward.mean == Approx(without.forward.mean).epsilon(1e-3).margin(1e-9 * diagonal));
+      CHECK(with.forward.rms == Approx(without.forward.rms).epsilon(1e-3).margin(1e-9 * diagonal));
+    }
+  }
 }
 
 TEST_CASE("the maximum lies between its bounds on meshes of every sort") {

@@ -13,7 +13,7 @@ namespace lodestone::detail {
 namespace {
 
 // Two digits for a table and a report, in a fraction of the time that `compare` takes for its four.
-constexpr double kSceneSamples = 50'000;           // Each way, for a level of all meshes together.
+constexpr double kSceneSamples = 20'000;           // Each way, for a level of all meshes together.
 constexpr double kSceneAttributeSamples = 20'000;  // The same for attributes.
 constexpr double kDistancesShare = 0.9;            // of the work; attributes are the rest
 constexpr double kLeastShare = 0.02;               // Of them for one mesh: its own numbers need some, too.

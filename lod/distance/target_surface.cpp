@@ -1,0 +1,98 @@
+#include "distance/target_surface.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "distance/triangle.h"
+
+namespace lodestone::detail {
+namespace {
+
+constexpr std::size_t kMostScans = 30;  // An index takes about the time of so many.
+
+double squared_distance(const Mesh& mesh, const Vec3& p, Index face) {
+  return squared_length(p - nearest_on_triangle(p, triangle_of(mesh, face)));
+}
+
+double squared_distance_to_box(const Vec3& p, const Triangle& triangle) {
+  const auto beyond = [](double x, float a, float b, float c) {
+    const auto low = static_cast<double>(std::min({a, b, c})), high = static_cast<double>(std::max({a, b, c}));
+    return std::max({low - x, x - high, 0.0});
+  };
+  return squared_length({beyond(p.x, triangle.a.x, triangle.b.x, triangle.c.x),
+                         beyond(p.y, triangle.a.y, triangle.b.y, triangle.c.y),
+                         beyond(p.z, triangle.a.z, triangle.b.z, triangle.c.z)});
+}
+
+}  // namespace
+
+double TargetSurface::distance_to_face(const Vec3& p, Index face) const {
+  return std::sqrt(squared_distance(mesh_, p, face));
+}
+
+TargetSurface::Near TargetSurface::near(const Vec3& p, Index start) const {
+  Place place = look_at(p, start);
+  while (step_across(p, place) || step_around(p, place)) {
+  }
+  return {place.face, std::sqrt(place.squared_distance)};
+}
+
+TargetSurface::Place TargetSurface::look_at(const Vec3& p, Index face) const {
+  const NearestPoint nearest = nearest_in_triangle(p, triangle_of(mesh_, face));
+  return {face, nearest.corners, squared_length(p - nearest.point)};
+}
+
+/// Steps to the first of the faces beyond the edges that is nearer. The nearest point may lie on an edge: then the one
+/// beyond that is looked at alone.
+bool TargetSurface::step_across(const Vec3& p, Place& place) const {
+  for (Index k = 0; k < 3; ++k) {
+    const unsigned edge = 1U << k | 1U << next_corner(k);
+    if ((place.corners & ~edge) != 0 || opposite_[3 * place.face + k] == kNoIndex) continue;
+    const Place other = look_at(p, face_of_corner(opposite_[3 * place.face + k]));
+    if (other.squared_distance >= place.squared_distance) continue;
+    place = other;
+    return true;
+  }
+  return false;
+}
+
+/// Where the nearest point is a corner, steps to the first face around it that is nearer.
+bool TargetSurface::step_around(const Vec3& p, Place& place) const {
+  if (std::popcount(place.corners) != 1) return false;
+  const Index corner = 3 * place.face + static_cast<Index>(std::countr_zero(place.corners));
+  for (Index c = opposite_[corner]; c != kNoIndex; c = opposite_[c]) {
+    c = next_corner(c);
+    if (c == corner) return false;
+    const Place other = look_at(p, face_of_corner(c));
+    if (other.squared_distance >= place.squared_distance) continue;
+    place = other;
+    return true;
+  }
+  return false;
+}
+
+TargetSurface::Near TargetSurface::nearest(const Vec3& p, Index hint) {
+  if (given_ == nullptr && !made_) {
+    if (scans_++ < kMostScans) return scan(p, hint);
+    made_.emplace(mesh_);
+  }
+  const SurfaceIndex& index = given_ != nullptr ? *given_ : *made_;
+  const SurfaceIndex::Hit hit = index.nearest(p, std::numeric_limits<double>::infinity(), hint);
+  return {hit.face, hit.distance};
+}
+
+/// Looks at all faces whose boxes are nearer than the best so far, which is `hint` at first.
+TargetSurface::Near TargetSurface::scan(const Vec3& p, Index hint) const {
+  Index nearest = hint;
+  double least = hint != kNoIndex ? squared_distance(mesh_, p, hint) : std::numeric_limits<double>::infinity();
+  for (Index face = 0; face < mesh_.face_count(); ++face) {
+    if (squared_distance_to_box(p, triangle_of(mesh_, face)) >= least) continue;
+    const double squared = squared_distance(mesh_, p, face);
+    if (squared < least) least = squared, nearest = face;
+  }
+  return {nearest, std::sqrt(least)};
+}
+
+}  // namespace lodestone::detail
