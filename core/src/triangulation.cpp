@@ -34,6 +34,7 @@ std::vector<Triangles> enumerate(int first, int last) {
 struct Table {
   std::array<int, kMaxTabulatedPolygon + 1> count{};
   std::array<Triangles, kMaxTabulatedPolygon + 1> triangles;
+  std::array<std::vector<std::uint8_t>, kMaxTabulatedPolygon + 1> numbers;
 
   Table() {
     for (int size = 2; size <= kMaxTabulatedPolygon; ++size) {
@@ -41,6 +42,8 @@ struct Table {
         triangles[size].insert(triangles[size].end(), one.begin(), one.end());
         ++count[size];
       }
+      for (const PolygonTriangle t : triangles[size])
+        numbers[size].push_back(static_cast<std::uint8_t>(triangle_number(t)));
     }
   }
 };
@@ -62,5 +65,7 @@ std::span<const PolygonTriangle> triangulation(int size, int which) {
   const auto length = static_cast<std::size_t>(size - 2);
   return std::span(all).subspan(static_cast<std::size_t>(which) * length, length);
 }
+
+std::span<const std::uint8_t> triangulation_numbers(int size) { return table().numbers[size]; }
 
 }  // namespace lodestone

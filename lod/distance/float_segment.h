@@ -9,6 +9,7 @@ namespace lodestone::detail {
 /// A vector in single precision, as loops over many points have it.
 struct FloatVec {
   float x, y, z;
+  FloatVec(float x_, float y_, float z_) : x(x_), y(y_), z(z_) {}
   explicit FloatVec(const Vec3& v)
       : x(static_cast<float>(v.x)), y(static_cast<float>(v.y)), z(static_cast<float>(v.z)) {}
   float dot(float px, float py, float pz) const { return px * x + py * y + pz * z; }
@@ -22,6 +23,7 @@ struct FloatSegment {
   FloatVec direction;
   float inverse_square;
 
+  FloatSegment(const FloatVec& d, float inverse) : direction(d), inverse_square(inverse) {}
   explicit FloatSegment(const Vec3& d) : direction(d), inverse_square(inverse_of(squared_length(d))) {}
   float squared_distance(float x, float y, float z) const {
     const float along = direction.dot(x, y, z) * inverse_square;

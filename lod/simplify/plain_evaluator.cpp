@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "distance/point_patch.h"
 #include "simplify/angles.h"
 
 namespace lodestone::detail {
@@ -20,36 +19,14 @@ PlainEvaluator::PlainEvaluator(const SimplifyState& state, const SimplifyOptions
 Evaluation PlainEvaluator::evaluate(Choice& choice) {
   if (!is_simple(star_, state_->connectivity)) return {Verdict::Link};
   start();
-  if (measured_ > 0) {
-    points_.start();
-    for (std::size_t i = 0; i < star_.size; ++i)
-      points_.add_face(state_->points, face_of_corner(star_.corner[i]), star_.center);
-  }
   rank();
-  Verdict verdict = Verdict::Ring;
-  Displacement moved;
-  double least = std::numeric_limits<double>::infinity();
-  const std::size_t wanted = std::max<std::size_t>(measured_, 1);
-  for (std::size_t i = 0, legal = 0; i < filling_count_ && legal < wanted; ++i) {
-    const auto rest = fillings_.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto less = [](const Filling& a, const Filling& b) { return a.squared_volume < b.squared_volume; };
-    std::iter_swap(rest, std::min_element(rest, fillings_.begin() + static_cast<std::ptrdiff_t>(filling_count_), less));
-    const Triangles triangles = filling(rest->which);
-    const Verdict found = judge(triangles);
-    verdict = std::min(verdict, found);
-    if (rejects(found)) continue;
-    ++legal;
-    const double distance = measured_ > 0 ? squared_distance(triangles) : 1;
-    // By (V·D)⁶; the curvature's part is left to the order of removals.
-    const double rank = rest->squared_volume * distance * distance * distance;
-    if (legal > 1 && !(rank < least)) continue;
-    least = rank;
-    moved.squared_volume = rest->squared_volume;
-    moved.squared_distance = distance;
-    choice = {rest->which, kPlain};
-  }
+  const Verdict verdict = choose_legal();
   if (rejects(verdict)) return {verdict};
-  const Triangles triangles = filling(choice[0]);
+  Displacement moved;
+  const Filling best = measured_ > 0 ? best_by_distance(moved) : legal_.front();
+  moved.squared_volume = best.squared_volume;
+  choice = {best.which, kPlain};
+  const Triangles triangles = filling(best.which);
   if (measured_ > 0) moved.squared_distance = joined_distance(moved.squared_distance, bridge_sum(triangles));
   if (!attributes_->empty()) moved.squared_attributes = squared_attribute_difference(triangles);
   const double turned = curvature_error(triangles);
@@ -86,9 +63,9 @@ void PlainEvaluator::rank() {
     rank_all();
   } else {
     rank_fans();
-    const Triangles least = fills_.cheapest(star_.size, [&](PolygonTriangle t) {
-      return rejects(judge(t)) ? std::numeric_limits<double>::infinity() : squared_volume(t);
-    });
+    const Triangles least = fills_.cheapest(
+        star_.size, [&](PolygonTriangle t) { return squared_volume(t); },
+        [&](PolygonTriangle t) { return !rejects(judge(t)); });
     least_volume_.assign(least.begin(), least.end());
     double sum = 0;
     for (const PolygonTriangle t : least_volume_) sum += squared_volume(t);
@@ -108,11 +85,10 @@ void PlainEvaluator::rank_all() {
       }
     }
   const auto size = static_cast<int>(star_.size);
-  const int count = triangulation_count(size);
-  for (int which = 0; which < count; ++which) {
+  const std::uint8_t* next = triangulation_numbers(size).data();
+  for (int which = 0; which < triangulation_count(size); ++which) {
     double sum = 0;
-    for (const PolygonTriangle t : triangulation(size, which))
-      sum += volume[static_cast<std::size_t>(triangle_number(t))];
+    for (int i = 0; i < size - 2; ++i) sum += volume[*next++];
     fillings_[filling_count_++] = {sum, static_cast<std::uint8_t>(which)};
   }
 }
@@ -129,6 +105,46 @@ void PlainEvaluator::rank_fans() {
     const double form = u.x * (xx * u.x + 2 * (xy * u.y + xz * u.z)) + u.y * (yy * u.y + 2 * yz * u.z) + u.z * zz * u.z;
     fillings_[filling_count_++] = {std::max(form, 0.0) / 36, static_cast<std::uint8_t>(i)};
   }
+}
+
+/// Finds the legal fillings of least volume, as many as are measured; where there is none, tells why.
+Verdict PlainEvaluator::choose_legal() {
+  legal_count_ = 0;
+  distances_.clear();
+  Verdict verdict = Verdict::Ring;
+  const std::size_t wanted = std::max<std::size_t>(measured_, 1);
+  const auto end = fillings_.begin() + static_cast<std::ptrdiff_t>(filling_count_);
+  const auto less = [](const Filling& a, const Filling& b) { return a.squared_volume < b.squared_volume; };
+  for (auto rest = fillings_.begin(); rest != end && legal_count_ < wanted; ++rest) {
+    std::iter_swap(rest, std::min_element(rest, end, less));
+    const Triangles triangles = filling(rest->which);
+    const Verdict found = judge(triangles);
+    verdict = std::min(verdict, found);
+    if (rejects(found)) continue;
+    legal_[legal_count_++] = *rest;
+    if (measured_ > 0) distances_.add(triangles);
+  }
+  return verdict;
+}
+
+/// Returns the legal filling whose volume and distances are least together, and what its distances are charged.
+PlainEvaluator::Filling PlainEvaluator::best_by_distance(Displacement& moved) {
+  points_.start();
+  for (std::size_t i = 0; i < star_.size; ++i)
+    points_.add_face(state_->points, face_of_corner(star_.corner[i]), star_.center);
+  distances_.measure(points_.places, {star_.spoke.data(), star_.size});
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < legal_count_; ++i) {
+    const double distance = squared_distance(i);
+    // By (V·D)⁶; the curvature's part is left to the order of removals.
+    const double rank = legal_[i].squared_volume * distance * distance * distance;
+    if (i > 0 && !(rank < least)) continue;
+    least = rank;
+    best = i;
+    moved.squared_distance = distance;
+  }
+  return legal_[best];
 }
 
 double PlainEvaluator::squared_volume(PolygonTriangle t) const {
@@ -159,7 +175,8 @@ Verdict PlainEvaluator::judge(PolygonTriangle t) {
   for (const auto& [from, to] : {std::pair{t.a, t.b}, std::pair{t.b, t.c}, std::pair{t.c, t.a}})
     if (!is_rim(from, to) && is_linked(from, to)) judged.verdict = Verdict::Link;
   const PlainStar::Ring<Index>& wedge = star_.ring_wedge;
-  if (!rejects(judged.verdict) && attributes_->turns_texture(wedge[t.a], wedge[t.b], wedge[t.c], scale_))
+  if (!rejects(judged.verdict) && attributes_->texture_count() > 0 &&
+      attributes_->turns_texture(wedge[t.a], wedge[t.b], wedge[t.c], scale_))
     judged.verdict = Verdict::Texture;
   return judged.verdict;
 }
@@ -188,13 +205,12 @@ bool PlainEvaluator::is_linked(std::size_t a, std::size_t b) {
   return (linked_[a] >> b & 1) != 0;
 }
 
-/// What the carried points are charged for by a filling.
-double PlainEvaluator::squared_distance(Triangles triangles) {
-  nearest_.resize(points_.places.padded_size());
-  squared_distances(points_.places, Patch{{star_.spoke.data(), star_.size}, triangles}, nearest_.data());
+/// What the carried points are charged for by a legal filling.
+double PlainEvaluator::squared_distance(std::size_t filling) {
+  const float* nearest = distances_.to(filling);
   float sum = 0;
   for (std::size_t i = 0; i < points_.places.size(); ++i)
-    sum += points_.weights[i] * rules_->beyond_rounding(nearest_[i]);
+    sum += points_.weights[i] * rules_->beyond_rounding(nearest[i]);
   return charged_distance(static_cast<double>(sum), points_.squared_distance_before);
 }
 
@@ -213,8 +229,9 @@ double PlainEvaluator::bridge_sum(Triangles triangles) {
     corners[i + 1] = star_.spoke[i];
     faces[i] = {0, static_cast<std::uint8_t>(i + 1), static_cast<std::uint8_t>(star_.after(i) + 1)};
   }
+  star_frames_.set({corners.data(), star_.size + 1}, {faces.data(), star_.size});
   nearest_.resize(bridge_.padded_size());
-  squared_distances(bridge_, Patch{{corners.data(), star_.size + 1}, {faces.data(), star_.size}}, nearest_.data());
+  star_frames_.least_squared_distances(bridge_, nearest_.data());
   float sum = 0;
   for (std::size_t i = 0; i < bridge_.size(); ++i) sum += rules_->beyond_rounding(nearest_[i]);
   return static_cast<double>(sum);

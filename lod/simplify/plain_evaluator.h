@@ -9,6 +9,8 @@
 #include <lodestone/lod/simplify_options.h>
 
 #include "simplify/attribute_cost.h"
+#include "simplify/face_frames.h"
+#include "simplify/filling_distances.h"
 #include "simplify/plain_star.h"
 #include "simplify/polygon_fills.h"
 #include "simplify/removal_cost.h"
@@ -66,7 +68,9 @@ class PlainEvaluator {
   Verdict judge_shape(PolygonTriangle t) const;
   bool is_rim(std::size_t from, std::size_t to) const { return star_.after(from) == to; }
   bool is_linked(std::size_t a, std::size_t b);
-  double squared_distance(Triangles triangles);
+  Verdict choose_legal();
+  Filling best_by_distance(Displacement& moved);
+  double squared_distance(std::size_t filling);
   double bridge_sum(Triangles triangles);
   AttributeScale attribute_scale() const;
   double squared_attribute_difference(Triangles triangles) const;
@@ -82,6 +86,8 @@ class PlainEvaluator {
   std::uint32_t star_number_ = 0;
   std::array<Filling, kMaxFillings> fillings_;
   std::size_t filling_count_ = 0;
+  std::array<Filling, kMostMeasured> legal_;  // of least volume
+  std::size_t legal_count_ = 0;
   std::array<Judged, triangle_count(PlainStar::kMaxSize)> judged_;
   PlainStar::Ring<std::uint32_t> linked_{};  // by ring vertex, see linked_ring
   std::uint32_t links_known_ = 0;            // by ring vertex
@@ -90,6 +96,8 @@ class PlainEvaluator {
   std::vector<PolygonTriangle> least_volume_;  // the filling of a large ring
   AttributeScale scale_;
   StarPoints points_;
+  FillingDistances distances_;
+  FaceFrames star_frames_;
   PointBatch bridge_;  // points of new faces
   std::vector<float> nearest_;
   Star described_;

@@ -1,5 +1,7 @@
 #include "simplify/plain_star.h"
 
+#include <bit>
+
 #include "simplify/site_walk.h"
 
 namespace lodestone::detail {
@@ -16,6 +18,7 @@ bool PlainStar::gather_ring(const Connectivity& connectivity) {
   const Index start = connectivity.corner_at(vertex);
   wedge = connectivity.wedge(start);
   size = 0;
+  site_filter = 0;
   Index at_last_spoke = kNoIndex;  // the ring's wedge there, as the face before sees it
   const Index material = connectivity.material(face_of_corner(start));
   for (Index c = start;;) {
@@ -26,6 +29,8 @@ bool PlainStar::gather_ring(const Connectivity& connectivity) {
     corner[size] = c;
     ring_wedge[size] = at_spoke;
     ring_vertex[size] = connectivity.vertex_of_wedge(at_spoke);
+    ring_site[size] = connectivity.site(ring_vertex[size]);
+    site_filter |= std::uint64_t{1} << (ring_site[size] % 64);
     ++size;
     at_last_spoke = connectivity.wedge(previous_corner(c));
     c = connectivity.swing_left(c);
@@ -49,20 +54,23 @@ void PlainStar::gather_shapes(const Mesh& mesh, const FaceRules& rules) {
 }
 
 bool is_simple(const PlainStar& star, const Connectivity& mesh) {
-  const auto site = [&](std::size_t i) { return mesh.site(star.ring_vertex[i]); };
-  for (std::size_t i = 0; i < star.size; ++i)
-    for (std::size_t j = i + 1; j < star.size; ++j)
-      if (site(i) == site(j)) return false;
-  return star.size > 3 || !(has_face(mesh, star.ring_vertex[0], site(1), site(2)) ||
-                            has_face(mesh, star.ring_vertex[0], site(2), site(1)));
+  const PlainStar::Ring<Index>& site = star.ring_site;
+  // As many bits as sites: all differ.
+  if (static_cast<std::size_t>(std::popcount(star.site_filter)) < star.size)
+    for (std::size_t i = 0; i < star.size; ++i)
+      for (std::size_t j = i + 1; j < star.size; ++j)
+        if (site[i] == site[j]) return false;
+  return star.size > 3 || !(has_face(mesh, star.ring_vertex[0], site[1], site[2]) ||
+                            has_face(mesh, star.ring_vertex[0], site[2], site[1]));
 }
 
 std::uint32_t linked_ring(const PlainStar& star, const Connectivity& mesh, std::size_t to) {
   std::uint32_t linked = 0;
   for_each_neighbour(mesh, star.ring_vertex[to], [&](Index, Index neighbour) {
     const Index site = mesh.site(neighbour);
+    if (!star.may_be_on_ring(site)) return;
     for (std::size_t k = 0; k < star.size; ++k)
-      if (mesh.site(star.ring_vertex[k]) == site) linked |= std::uint32_t{1} << k;
+      if (star.ring_site[k] == site) linked |= std::uint32_t{1} << k;
   });
   return linked;
 }

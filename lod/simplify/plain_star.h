@@ -26,8 +26,10 @@ struct PlainStar {
   Ring<Index> corner;      ///< face i's corner at the vertex
   Ring<Index> ring_wedge;  ///< face i is (vertex, ring i, ring i + 1)
   Ring<Index> ring_vertex;
-  Ring<Vec3> spoke;   ///< ring vertices
-  Ring<Vec3> normal;  ///< of face i, twice its area long
+  Ring<Index> ring_site;          ///< the first of each ring vertex's copies
+  std::uint64_t site_filter = 0;  ///< see may_be_on_ring
+  Ring<Vec3> spoke;               ///< ring vertices
+  Ring<Vec3> normal;              ///< of face i, twice its area long
   Ring<double> squared_normal;
   Ring<bool> has_direction;  ///< whether a face's normal is more than rounding
   FaceRules::Replaced faces;
@@ -35,6 +37,9 @@ struct PlainStar {
   /// Looks at a vertex that is not one of several copies. False where its star is not plain, or too large: then nothing
   /// else is told.
   bool gather(const Mesh& mesh, const Connectivity& connectivity, const FaceRules& rules, Index of_vertex);
+
+  /// False for most sites that are not on the ring.
+  bool may_be_on_ring(Index site) const { return (site_filter >> (site % 64) & 1) != 0; }
 
   std::size_t after(std::size_t i) const { return i + 1 < size ? i + 1 : 0; }
 

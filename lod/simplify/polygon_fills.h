@@ -21,15 +21,15 @@ class PolygonFills {
   /// The one whose triangles all meet at corner `apex`.
   Triangles fan(std::size_t size, std::size_t apex);
 
-  /// The one with the least sum of `price(triangle)`, which is infinite for a triangle that must not be in it; empty
-  /// where there is none. Dynamic programming over the polygon's parts, after G. T. Klincsek: Minimal triangulations of
-  /// polygonal domains (1980).
-  template <class Price>
-  Triangles cheapest(std::size_t size, const Price& price) {
+  /// The one with the least sum of `price(triangle)` of those whose triangles are all `allowed(triangle)`, which is
+  /// asked of as few as will do; empty where there is none. Dynamic programming over the polygon's parts, after
+  /// G. T. Klincsek: Minimal triangulations of polygonal domains (1980).
+  template <class Price, class Allowed>
+  Triangles cheapest(std::size_t size, const Price& price, const Allowed& allowed) {
     least_.assign(size * size, 0);
     apex_.assign(size * size, 0);
     for (std::size_t span = 2; span < size; ++span)
-      for (std::size_t from = 0; from + span < size; ++from) price_part(size, from, from + span, price);
+      for (std::size_t from = 0; from + span < size; ++from) price_part(size, from, from + span, price, allowed);
     return collect(size);
   }
 
@@ -39,14 +39,14 @@ class PolygonFills {
   }
 
   /// Finds the cheapest triangle on the edge that cuts off corners `from` to `to`; their parts are priced already.
-  template <class Price>
-  void price_part(std::size_t size, std::size_t from, std::size_t to, const Price& price) {
+  template <class Price, class Allowed>
+  void price_part(std::size_t size, std::size_t from, std::size_t to, const Price& price, const Allowed& allowed) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t apex = from + 1; apex < to; ++apex) {
       const double rest = least_[from * size + apex] + least_[apex * size + to];
       if (!(rest < least)) continue;
       const double sum = rest + price(triangle(from, apex, to));
-      if (!(sum < least)) continue;
+      if (!(sum < least) || !allowed(triangle(from, apex, to))) continue;
       least = sum;
       apex_[from * size + to] = static_cast<std::uint8_t>(apex);
     }

@@ -19,7 +19,6 @@ constexpr int kMeasuresDistances = 3;
 constexpr int kMeasuresSome = 5;
 constexpr int kMeasuresMore = 8;
 constexpr std::size_t kSome = 3;
-constexpr std::size_t kMore = 8;
 constexpr double kForgiven = 0.7;            // share of the distances before that a removal is not charged for
 constexpr double kLeastCharged = 0.02;       // share of the distances after it that it is charged for in any case
 constexpr double kMinCurvatureChange = 0.2;  // radians; below it curvature does not separate removals
@@ -42,7 +41,7 @@ double hybrid_cost(const Displacement& moved, bool measures_distances, double tu
 
 std::size_t measured_triangulations(const SimplifyOptions& options) {
   if (options.metric != Metric::Hybrid) return 0;
-  if (options.effort >= kMeasuresMore) return kMore;
+  if (options.effort >= kMeasuresMore) return kMostMeasured;
   if (options.effort >= kMeasuresSome) return kSome;
   return options.effort >= kMeasuresDistances ? 1 : 0;
 }

@@ -48,6 +48,7 @@ double hybrid_cost(double moved, double turned);
 double hybrid_cost(const Displacement& moved, bool measures_distances, double turned);
 
 /// How many triangulations of a hole, by swept volume, have their distances measured; 0: none, volume alone counts.
+inline constexpr std::size_t kMostMeasured = 8;
 std::size_t measured_triangulations(const SimplifyOptions& options);
 
 }  // namespace lodestone::detail

@@ -409,10 +409,12 @@ RemovalEvaluator::Triangles RemovalEvaluator::candidate(const Sector& sector, in
 /// The admissible triangulation with the least sum of squared volumes.
 RemovalEvaluator::Triangles RemovalEvaluator::least_volume(const Sector& sector) {
   if (sector.size() > kMaxSearchedPolygon) return {};
-  return fills_.cheapest(sector.size(), [&](PolygonTriangle t) {
-    const Triangle& entry = triangle(sector, t);
-    return rejects(entry.verdict) ? std::numeric_limits<double>::infinity() : entry.volume * entry.volume;
-  });
+  const auto squared_volume = [&](PolygonTriangle t) {
+    const double volume = triangle(sector, t).volume;
+    return volume * volume;
+  };
+  return fills_.cheapest(sector.size(), squared_volume,
+                         [&](PolygonTriangle t) { return !rejects(triangle(sector, t).verdict); });
 }
 
 double RemovalEvaluator::squared_volume_sum(const Sector& sector, Triangles triangles) {

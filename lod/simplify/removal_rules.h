@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include <lodestone/core/mesh.h>
@@ -13,7 +15,9 @@ enum class Verdict : std::uint8_t { Legal, Locked, Turn, Link, Shape, Texture, R
 
 inline bool rejects(Verdict verdict) { return verdict != Verdict::Legal; }
 
-double squared_longest_edge(const Vec3& a, const Vec3& b, const Vec3& c);
+inline double squared_longest_edge(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return std::max(std::max(squared_length(b - a), squared_length(c - b)), squared_length(a - c));
+}
 
 /// What the faces that fill a hole must be like. Normals are twice their faces' area long.
 class FaceRules {
@@ -24,7 +28,12 @@ class FaceRules {
   /// worse shape is better than too many faces. Returns whether there was further to go.
   bool relax_angles(bool beyond);
   /// Whether a face turns by more than the angle allowed, from one normal to another, both of any length.
-  bool turns_too_far(const Vec3& to, const Vec3& from) const;
+  bool turns_too_far(const Vec3& to, const Vec3& from) const {
+    if (turn_limit_ == TurnLimit::None) return false;
+    const double cosine = dot(to, from);
+    return cosine < 0 || (turn_limit_ == TurnLimit::Acute &&
+                          cosine * cosine < kMinCosine * kMinCosine * squared_length(to) * squared_length(from));
+  }
 
   /// Whether a face with such a normal and longest edge is so high that rounding its corners leaves the normal what it
   /// is.
@@ -39,7 +48,13 @@ class FaceRules {
     Vec3 normal;                     ///< sum of theirs
   };
   /// Adds a face that goes.
-  void add(const Vec3& normal, double squared_longest, Replaced& faces) const;
+  void add(const Vec3& normal, double squared_longest, Replaced& faces) const {
+    const double square = squared_length(normal);
+    if (!(square > kMinShape * kMinShape * squared_longest * squared_longest))
+      faces.least_shape = std::min(faces.least_shape, (1 - kSameShape) * std::sqrt(square) / squared_longest);
+    faces.have_directions = faces.have_directions && has_direction(square, squared_longest);
+    faces.normal += normal;
+  }
   /// Whether a new face would be too thin.
   bool is_too_thin(double squared_normal, double squared_longest, const Replaced& faces) const {
     const double least = faces.least_shape * squared_longest;
@@ -60,6 +75,8 @@ class FaceRules {
 
  private:
   enum class TurnLimit : std::uint8_t { Acute, Right, None };
+  static constexpr double kMinCosine = 0.2;   // of the angle that faces may turn, at first
+  static constexpr double kSameShape = 1e-6;  // relative; shapes that differ by less are the same
   static constexpr double kMinShape =
       1e-3;  // a new face's height over its longest edge, where there are no slivers yet
 

@@ -15,7 +15,7 @@ namespace lodestone::detail {
 namespace {
 
 // Enough to tell a face's distance from the surface it stands for; more costs time and gains nothing measurable.
-constexpr std::size_t kMaxPointsOfFace = 8;
+constexpr std::size_t kMaxPointsOfFace = 5;
 
 /// Takes all points off a sector's fine faces.
 std::vector<Index> take_points(CarriedPoints& points, const SectorPatch& sector) {

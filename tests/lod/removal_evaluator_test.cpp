@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "distance/point_patch.h"
 #include "distance/point_triangle.h"
 #include "simplify/angles.h"
 #include "simplify/creases.h"
+#include "simplify/filling_distances.h"
 #include "support/catch.h"
 #include "support/mesh_properties.h"
 #include "support/random.h"
@@ -38,7 +38,7 @@ TEST_CASE("angles are as near to the true ones as is said, all the way round") {
   for (std::size_t i = 0; i < found.size(); ++i) CHECK(std::abs(found[i] - expected[i]) < 3e-10);
 }
 
-TEST_CASE("the distance to a patch is the least of those to its triangles") {
+TEST_CASE("the distance to a filling is the least of those to its triangles, whichever others are measured") {
   Random random(5);
   for (int trial = 0; trial < 200; ++trial) {
     const int size = 3 + static_cast<int>(random.below(5));
@@ -48,15 +48,23 @@ TEST_CASE("the distance to a patch is the least of those to its triangles") {
     PointBatch points;
     const std::size_t count = 1 + random.below(40);
     for (std::size_t i = 0; i < count; ++i) points.add(random_point(random) * 2);
-    const auto which = static_cast<int>(random.below(static_cast<std::size_t>(triangulation_count(size))));
-    const Patch patch{corners, triangulation(size, which)};
-    std::vector<float> found(points.padded_size()), expected(points.padded_size(), 1e9F), one(points.padded_size());
-    squared_distances(points, patch, found.data());
-    for (const PolygonTriangle t : patch.triangles) {
-      squared_distances(points, std::array{corners[t.a], corners[t.b], corners[t.c]}, one.data());
-      for (std::size_t i = 0; i < one.size(); ++i) expected[i] = std::min(expected[i], one[i]);
+    FillingDistances distances;
+    distances.clear();
+    std::vector<int> fillings;
+    for (std::size_t k = 0; k < kMostMeasured; ++k) {
+      fillings.push_back(static_cast<int>(random.below(static_cast<std::size_t>(triangulation_count(size)))));
+      distances.add(triangulation(size, fillings.back()));
     }
-    for (std::size_t i = 0; i < count; ++i) CHECK(std::abs(found[i] - expected[i]) < 1e-4F * (1 + expected[i]));
+    distances.measure(points, corners);
+    for (std::size_t k = 0; k < fillings.size(); ++k) {
+      const float* found = distances.to(k);
+      std::vector<float> expected(points.padded_size(), 1e9F), one(points.padded_size());
+      for (const PolygonTriangle t : triangulation(size, fillings[k])) {
+        squared_distances(points, std::array{corners[t.a], corners[t.b], corners[t.c]}, one.data());
+        for (std::size_t i = 0; i < one.size(); ++i) expected[i] = std::min(expected[i], one[i]);
+      }
+      for (std::size_t i = 0; i < count; ++i) CHECK(std::abs(found[i] - expected[i]) < 1e-4F * (1 + expected[i]));
+    }
   }
 }
 

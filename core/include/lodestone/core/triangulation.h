@@ -26,6 +26,10 @@ std::span<const PolygonTriangle> triangulation(int size, int which);
 /// C(c,3) + C(b,2) + a, which does not depend on the polygon's size.
 constexpr int triangle_number(PolygonTriangle t) { return t.c * (t.c - 1) * (t.c - 2) / 6 + t.b * (t.b - 1) / 2 + t.a; }
 
+/// Returns the numbers of all triangulations' triangles: size − 2 of them for each, one triangulation after the other.
+/// Pre: 2 ≤ size ≤ kMaxTabulatedPolygon.
+std::span<const std::uint8_t> triangulation_numbers(int size);
+
 /// Returns how many triangles a polygon's corners make: C(size, 3), more than any of their numbers.
 constexpr int triangle_count(int size) { return size * (size - 1) * (size - 2) / 6; }
 
