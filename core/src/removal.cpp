@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 #include <unordered_set>
 #include <utility>
 
@@ -185,10 +186,20 @@ void join_spokes(const PatchAccess& access, const RemovalRecord& record) {
   }
 }
 
+/// Anchors each vertex of a filled polygon: at the last corner that it has there, or where its border begins.
+void anchor_polygon(const PatchAccess& access, const SectorPatch& sector) {
+  std::array<Index, std::numeric_limits<std::uint8_t>::max() + 1> last;  // by polygon corner
+  for (std::size_t i = 0; i < sector.triangles.size(); ++i) {
+    const PolygonTriangle t = sector.triangles[i];
+    const Index corner = 3 * sector.faces[i];
+    last[t.a] = corner, last[t.b] = corner + 1, last[t.c] = corner + 2;
+  }
+  for (std::size_t i = 0; i < sector.polygon.size(); ++i) access.anchor(last[i]);
+}
+
 void anchor_ring(const PatchAccess& access, const RemovalRecord& record) {
   for (const SectorPatch& sector : record.sectors) {
-    for (std::size_t i = 0; i < sector.triangles.size(); ++i)
-      for (Index k = 0; k < 3; ++k) access.anchor(3 * sector.faces[i] + k);
+    if (sector.polygon.size() > 2) anchor_polygon(access, sector);
     if (sector.polygon.size() > 2 || sector.lone_outer == kNoIndex) continue;
     access.anchor(next_corner(sector.lone_outer));
     access.anchor(previous_corner(sector.lone_outer));

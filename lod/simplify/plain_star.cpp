@@ -1,5 +1,6 @@
 #include "simplify/plain_star.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "simplify/site_walk.h"
@@ -41,15 +42,16 @@ bool PlainStar::gather_ring(const Connectivity& connectivity) {
 
 void PlainStar::gather_shapes(const Mesh& mesh, const FaceRules& rules) {
   for (std::size_t i = 0; i < size; ++i) spoke[i] = Vec3(mesh.positions[ring_vertex[i]]) - center;
+  Ring<double> square;  // of spokes
+  for (std::size_t i = 0; i < size; ++i) square[i] = squared_length(spoke[i]);
   faces = {};
   for (std::size_t i = 0; i < size; ++i) {
-    const Vec3& a = spoke[i];
-    const Vec3& b = spoke[after(i)];
-    normal[i] = cross(a, b);
+    const std::size_t next = after(i);
+    normal[i] = cross(spoke[i], spoke[next]);
     squared_normal[i] = squared_length(normal[i]);
-    const double longest = squared_longest_edge({}, a, b);
+    const double longest = std::max({square[i], squared_length(spoke[next] - spoke[i]), square[next]});
     has_direction[i] = rules.has_direction(squared_normal[i], longest);
-    rules.add(normal[i], longest, faces);
+    rules.add(normal[i], squared_normal[i], longest, faces);
   }
 }
 

@@ -263,7 +263,7 @@ void RemovalEvaluator::take_lines(std::size_t target) {
 /// Collects what a sector's new faces are compared with.
 void RemovalEvaluator::gather_faces(Sector& sector) const {
   for (std::size_t i = sector.ring_begin; i < sector.ring_begin + sector.patch->face_count(); ++i)
-    rules_->add(fine_normal_[i],
+    rules_->add(fine_normal_[i], squared_length(fine_normal_[i]),
                 squared_longest_edge(center_, ring_position_[i], ring_position_[(i + 1) % ring_size()]), sector.faces);
 }
 

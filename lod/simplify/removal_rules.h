@@ -48,11 +48,10 @@ class FaceRules {
     Vec3 normal;                     ///< sum of theirs
   };
   /// Adds a face that goes.
-  void add(const Vec3& normal, double squared_longest, Replaced& faces) const {
-    const double square = squared_length(normal);
-    if (!(square > kMinShape * kMinShape * squared_longest * squared_longest))
-      faces.least_shape = std::min(faces.least_shape, (1 - kSameShape) * std::sqrt(square) / squared_longest);
-    faces.have_directions = faces.have_directions && has_direction(square, squared_longest);
+  void add(const Vec3& normal, double squared_normal, double squared_longest, Replaced& faces) const {
+    if (!(squared_normal > kMinShape * kMinShape * squared_longest * squared_longest))
+      faces.least_shape = std::min(faces.least_shape, (1 - kSameShape) * std::sqrt(squared_normal) / squared_longest);
+    faces.have_directions = faces.have_directions && has_direction(squared_normal, squared_longest);
     faces.normal += normal;
   }
   /// Whether a new face would be too thin.

@@ -6,6 +6,7 @@
 #include <lodestone/lod/simplify.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -25,6 +26,7 @@
 #include "simplify/evaluator_pool.h"
 #include "simplify/locks.h"
 #include "simplify/pieces.h"
+#include "simplify/point_carrier.h"
 #include "simplify/record_builder.h"
 #include "simplify/site_walk.h"
 #include "simplify/spatial_order.h"
@@ -98,6 +100,8 @@ class Simplifier {
   void evaluate(std::span<const Index> vertices, const Progress& progress);
   void evaluate(RemovalEvaluator& evaluator, Index vertex);
   bool choose_candidates();
+  void keep_cheapest(std::size_t count);
+  void rank(std::span<const Index> vertices);
   void drop_dearer(std::vector<Index>& vertices);
   void choose_dense();
   void pick_round();
@@ -106,7 +110,7 @@ class Simplifier {
   void describe(RemovalEvaluator& evaluator, PlannedRemoval& planned);
   bool remove_batch();
   void remove(PlannedRemoval& planned);
-  void follow_up(PlannedRemoval& planned);
+  void follow_up(PointCarrier& carrier, PlannedRemoval& planned);
   void account_for(PlannedRemoval& planned);
   bool claim_ring(Index vertex);
   void update_dirty();
@@ -147,6 +151,7 @@ class Simplifier {
   std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
   std::vector<Index> standing_;      // sites that are left, ascending, and some that have gone
   std::vector<Index> candidates_;
+  std::vector<std::uint64_t> ranked_;
   DenseRound dense_;
   std::vector<Index> within_;     // its limit: candidates of a dense round
   std::vector<Index> postponed_;  // of a dense round: whose turn is next
@@ -228,16 +233,31 @@ bool Simplifier::choose_candidates() {
   }
   const double narrow = is_hybrid ? kNarrowShare : kNarrowPureShare;
   const double share = candidates_.size() < kNarrowBelow ? narrow : kWideShare;
-  const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size())));
-  const auto cheaper = [&](Index a, Index b) { return cost_[a] != cost_[b] ? cost_[a] < cost_[b] : a < b; };
-  const auto last = candidates_.begin() + static_cast<std::ptrdiff_t>(count - 1);
-  std::nth_element(candidates_.begin(), last, candidates_.end(), cheaper);
-  const bool any_free = std::any_of(candidates_.begin(), last, [&](Index v) { return cost_[v] == 0; });
-  limit_ = any_free ? 0 : cost_[*last];
-  candidates_.resize(count);
-  drop_dearer(candidates_);
-  std::sort(candidates_.begin(), candidates_.end(), cheaper);
+  keep_cheapest(static_cast<std::size_t>(std::ceil(share * static_cast<double>(candidates_.size()))));
   return true;
+}
+
+/// Leaves so many of `candidates_`, or what of them is still as cheap, in order of (cost, number).
+void Simplifier::keep_cheapest(std::size_t count) {
+  rank(candidates_);
+  const auto last = ranked_.begin() + static_cast<std::ptrdiff_t>(count - 1);
+  std::nth_element(ranked_.begin(), last, ranked_.end());
+  const auto vertex = [](std::uint64_t ranked) { return static_cast<Index>(ranked); };
+  const bool any_free = std::any_of(ranked_.begin(), last, [&](std::uint64_t r) { return cost_[vertex(r)] == 0; });
+  limit_ = any_free ? 0 : cost_[vertex(*last)];
+  candidates_.resize(count);
+  std::transform(ranked_.begin(), last + 1, candidates_.begin(), vertex);
+  drop_dearer(candidates_);
+  rank(candidates_);
+  std::sort(ranked_.begin(), ranked_.end());
+  std::transform(ranked_.begin(), ranked_.end(), candidates_.begin(), vertex);
+}
+
+/// Fills `ranked_`: numbers that order the vertices by (cost, number), since floats of 0 and more are in the order of
+/// their bits.
+void Simplifier::rank(std::span<const Index> vertices) {
+  ranked_.clear();
+  for (const Index v : vertices) ranked_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(cost_[v])} << 32 | v);
 }
 
 /// Evaluates anew what is stale, and leaves out what costs more than the limit.
@@ -327,7 +347,8 @@ bool Simplifier::remove_batch() {
   std::size_t done = 0;
   for (; done < batch_size_ && !is_over(); ++done) remove(batch_[done]);
   for_each_chunk(done, kChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) follow_up(batch_[i]);
+    PointCarrier carrier(state_);
+    for (std::size_t i = begin; i < end; ++i) follow_up(carrier, batch_[i]);
   });
   for (std::size_t i = 0; i < done; ++i) account_for(batch_[i]);
   return done == batch_size_;
@@ -344,10 +365,10 @@ void Simplifier::remove(PlannedRemoval& planned) {
 }
 
 /// What one removal does by itself, and nowhere but in its own star.
-void Simplifier::follow_up(PlannedRemoval& planned) {
+void Simplifier::follow_up(PointCarrier& carrier, PlannedRemoval& planned) {
   if (rejects(planned.evaluation.verdict)) return;
   if (measured_triangulations(options_) > 0)
-    for (const RemovalRecord& record : planned.records) carry_points(state_, record);
+    for (const RemovalRecord& record : planned.records) carrier.carry(record);
   keep_curvature(state_, planned.records, planned.curvature);
   bounds_.displacements(planned.records, planned.displacement);
 }
@@ -550,7 +571,7 @@ void Simplifier::stop_removing() {
   state_.points = CarriedPoints(Mesh());
   free(state_.lines, state_.curvature, state_.original_curvature);
   free(cost_, verdict_, choice_, stale_, standing_, candidates_, claimed_, dirty_, bent_, looked_at_, batch_);
-  free(dense_, within_, postponed_);
+  free(ranked_, dense_, within_, postponed_);
 }
 
 BlockedCounts Simplifier::count_blocked() const {

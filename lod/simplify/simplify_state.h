@@ -40,11 +40,7 @@ void keep_curvature(SimplifyState& state, std::span<const RemovalRecord> records
 /// Returns the curvature that a metric looks at, in its own unit; the hybrid metric looks at K̄.
 double metric_curvature(const SimplifyOptions& options, const VertexCurvature& curvature);
 
-/// Moves the memory of the removed surface along with a removal that has just been done: the points of the star's
-/// faces, and the removed vertex, to the nearest of the new faces.
-void carry_points(SimplifyState& state, const RemovalRecord& record);
-
-/// The same for the lines through the vertex: to the edges in their place.
+/// Moves the lines through a vertex along with its removal, which has just been done: to the edges in their place.
 void carry_lines(SimplifyState& state, const RemovalRecord& record);
 
 }  // namespace lodestone::detail
