@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -101,8 +102,9 @@ class Simplifier {
   void evaluate(RemovalEvaluator& evaluator, Index vertex);
   bool choose_candidates();
   void keep_cheapest(std::size_t count);
-  void rank(std::span<const Index> vertices);
+  std::vector<std::uint64_t> rank(std::span<const Index> vertices) const;
   void drop_dearer(std::vector<Index>& vertices);
+  void look_anew();
   void choose_dense();
   void pick_round();
   bool run_round();
@@ -151,7 +153,6 @@ class Simplifier {
   std::vector<std::uint8_t> stale_;  // by vertex: whether its surroundings have changed since it was evaluated
   std::vector<Index> standing_;      // sites that are left, ascending, and some that have gone
   std::vector<Index> candidates_;
-  std::vector<std::uint64_t> ranked_;
   DenseRound dense_;
   std::vector<Index> within_;     // its limit: candidates of a dense round
   std::vector<Index> postponed_;  // of a dense round: whose turn is next
@@ -161,6 +162,7 @@ class Simplifier {
   std::vector<Index> looked_at_;
   std::vector<PlannedRemoval> batch_;
   std::size_t batch_size_ = 0;
+  std::vector<std::size_t> along_curve_;  // the batch's removals in the order of their vertices
   Index round_ = 0;
   Star star_;
   StopReason stop_reason_ = StopReason::Stuck;
@@ -239,25 +241,27 @@ bool Simplifier::choose_candidates() {
 
 /// Leaves so many of `candidates_`, or what of them is still as cheap, in order of (cost, number).
 void Simplifier::keep_cheapest(std::size_t count) {
-  rank(candidates_);
-  const auto last = ranked_.begin() + static_cast<std::ptrdiff_t>(count - 1);
-  std::nth_element(ranked_.begin(), last, ranked_.end());
-  const auto vertex = [](std::uint64_t ranked) { return static_cast<Index>(ranked); };
-  const bool any_free = std::any_of(ranked_.begin(), last, [&](std::uint64_t r) { return cost_[vertex(r)] == 0; });
+  std::vector<std::uint64_t> ranked = rank(candidates_);
+  const auto last = ranked.begin() + static_cast<std::ptrdiff_t>(count - 1);
+  std::nth_element(ranked.begin(), last, ranked.end());
+  const auto vertex = [](std::uint64_t r) { return static_cast<Index>(r); };
+  const bool any_free = std::any_of(ranked.begin(), last, [&](std::uint64_t r) { return cost_[vertex(r)] == 0; });
   limit_ = any_free ? 0 : cost_[vertex(*last)];
   candidates_.resize(count);
-  std::transform(ranked_.begin(), last + 1, candidates_.begin(), vertex);
+  std::transform(ranked.begin(), last + 1, candidates_.begin(), vertex);
   drop_dearer(candidates_);
-  rank(candidates_);
-  std::sort(ranked_.begin(), ranked_.end());
-  std::transform(ranked_.begin(), ranked_.end(), candidates_.begin(), vertex);
+  ranked = rank(candidates_);
+  std::sort(ranked.begin(), ranked.end());
+  std::transform(ranked.begin(), ranked.end(), candidates_.begin(), vertex);
 }
 
-/// Fills `ranked_`: numbers that order the vertices by (cost, number), since floats of 0 and more are in the order of
-/// their bits.
-void Simplifier::rank(std::span<const Index> vertices) {
-  ranked_.clear();
-  for (const Index v : vertices) ranked_.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(cost_[v])} << 32 | v);
+/// Returns numbers that order the vertices by (cost, number), since floats of 0 and more are in the order of their
+/// bits.
+std::vector<std::uint64_t> Simplifier::rank(std::span<const Index> vertices) const {
+  std::vector<std::uint64_t> ranked;
+  ranked.reserve(vertices.size());
+  for (const Index v : vertices) ranked.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(cost_[v])} << 32 | v);
+  return ranked;
 }
 
 /// Evaluates anew what is stale, and leaves out what costs more than the limit.
@@ -265,8 +269,14 @@ void Simplifier::drop_dearer(std::vector<Index>& vertices) {
   looked_at_.clear();
   for (const Index v : vertices)
     if (stale_[v] != 0) looked_at_.push_back(v);
-  evaluate(looked_at_, within_round_);
+  look_anew();
   std::erase_if(vertices, [&](Index v) { return cost_[v] > limit_; });
+}
+
+/// Evaluates `looked_at_`, in the order of the curve: what is evaluated next then lies where the last was.
+void Simplifier::look_anew() {
+  std::sort(looked_at_.begin(), looked_at_.end());
+  evaluate(looked_at_, within_round_);
 }
 
 /// Replaces `candidates_`, all that can go, by those picked for a dense round whose turn has not come; rings that meet
@@ -326,8 +336,13 @@ std::size_t Simplifier::plan_batch(std::size_t candidate) {
     if (batch_size_ == batch_.size()) batch_.emplace_back();
     batch_[batch_size_++].vertex = vertex;
   }
-  evaluators_.for_each(batch_size_, kChunk, within_round_,
-                       [&](RemovalEvaluator& evaluator, std::size_t i) { describe(evaluator, batch_[i]); });
+  along_curve_.resize(batch_size_);
+  std::iota(along_curve_.begin(), along_curve_.end(), std::size_t{0});
+  std::sort(along_curve_.begin(), along_curve_.end(),
+            [&](std::size_t a, std::size_t b) { return batch_[a].vertex < batch_[b].vertex; });
+  evaluators_.for_each(batch_size_, kChunk, within_round_, [&](RemovalEvaluator& evaluator, std::size_t i) {
+    describe(evaluator, batch_[along_curve_[i]]);
+  });
   return candidate;
 }
 
@@ -346,9 +361,10 @@ void Simplifier::describe(RemovalEvaluator& evaluator, PlannedRemoval& planned) 
 bool Simplifier::remove_batch() {
   std::size_t done = 0;
   for (; done < batch_size_ && !is_over(); ++done) remove(batch_[done]);
-  for_each_chunk(done, kChunk, [&](std::size_t begin, std::size_t end) {
+  for_each_chunk(batch_size_, kChunk, [&](std::size_t begin, std::size_t end) {
     PointCarrier carrier(state_);
-    for (std::size_t i = begin; i < end; ++i) follow_up(carrier, batch_[i]);
+    for (std::size_t i = begin; i < end; ++i)
+      if (along_curve_[i] < done) follow_up(carrier, batch_[along_curve_[i]]);
   });
   for (std::size_t i = 0; i < done; ++i) account_for(batch_[i]);
   return done == batch_size_;
@@ -434,7 +450,7 @@ void Simplifier::update_dirty() {
     if (cost_[site] == kIllegal || limit_ == 0) looked_at_.push_back(site);
     stale_[site] = 1;
   }
-  evaluate(looked_at_, within_round_);
+  look_anew();
 }
 
 /// Removes the candidates whose rings do not meet, and pieces that cost no more; false where nothing is left to try.
@@ -570,8 +586,9 @@ void Simplifier::stop_removing() {
   evaluators_.stop();
   state_.points = CarriedPoints(Mesh());
   free(state_.lines, state_.curvature, state_.original_curvature);
-  free(cost_, verdict_, choice_, stale_, standing_, candidates_, claimed_, dirty_, bent_, looked_at_, batch_);
-  free(ranked_, dense_, within_, postponed_);
+  free(cost_, verdict_, choice_, stale_, standing_, candidates_, claimed_, dirty_, bent_, looked_at_, batch_,
+       along_curve_);
+  free(dense_, within_, postponed_);
 }
 
 BlockedCounts Simplifier::count_blocked() const {
