@@ -17,6 +17,21 @@ function(lodestone_settings target)
   endif()
 endfunction()
 
+# Where CMAKE_UNITY_BUILD is on, which the sanitized preset has: so many sources of a folder are compiled at once. Headers and
+# what they instantiate, JSON above all, cost more than most sources.
+set(LODESTONE_BATCH 8)
+function(lodestone_compile_in_batches target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_filename_component(folder ${source} DIRECTORY)
+    get_filename_component(folder "${folder}" NAME)
+    math(EXPR batch "0${count_${folder}} / ${LODESTONE_BATCH}")
+    math(EXPR count_${folder} "0${count_${folder}} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${folder}_${batch}")
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # lodestone_module(core SOURCES src/a.cpp … DEPENDS lodestone::… PRIVATE_DEPENDS …): a library of its own, shared where
 # BUILD_SHARED_LIBS says so, or always with SHARED. Its public headers lie in include/ of the folder, those for the folder alone are named from it:
 # "distance/triangle.h".
@@ -39,6 +54,7 @@ function(lodestone_module name)
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   lodestone_settings(${target})
+  lodestone_compile_in_batches(${target})
   set_property(GLOBAL APPEND PROPERTY LODESTONE_MODULES ${target})
 endfunction()
 

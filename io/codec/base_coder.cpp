@@ -6,7 +6,7 @@
 namespace lodestone::detail {
 namespace {
 
-enum Context : std::uint32_t { kIsNew, kHasWedge, kHasTwo, kHasMore, kIsSame };
+enum BaseContext : std::uint32_t { kIsNewVertex, kHasWedge, kHasTwo, kHasMore, kIsLastWedge };
 
 }  // namespace
 
@@ -19,7 +19,7 @@ bool BaseCoder::code_corners(BitCoder& coder, BaseMesh& base) {
   const auto vertex_count = static_cast<Index>(base.positions.size());
   Index used = 0;
   for (Index& corner : base.corners) {
-    const bool is_new = code_bit(coder, kIsNew, corner == used);
+    const bool is_new = code_bit(coder, kIsNewVertex, corner == used);
     if (!is_new) corner = coder.code_raw(corner, std::bit_width(std::max<Index>(used, 1) - 1));
     if (is_new) corner = used++;
     if (corner >= std::min(used, vertex_count)) return false;
@@ -46,7 +46,7 @@ bool BaseCoder::code_wedges(BitCoder& coder, BaseMesh& base) {
     const Index vertex = base.corners[c], count = base.wedge_counts[vertex];
     if (count == 0) return false;
     Index& wedge = base.wedges[c];
-    if (count == 1 || code_bit(coder, kIsSame, wedge == last[vertex])) {
+    if (count == 1 || code_bit(coder, kIsLastWedge, wedge == last[vertex])) {
       wedge = last[vertex];
       continue;
     }

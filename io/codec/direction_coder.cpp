@@ -12,8 +12,7 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr int kUsualMiss = 16 * 10;  // of 2^14
-constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
+constexpr int kUsualDirectionMiss = 16 * 10;  // of 2^14
 
 std::int64_t length_of(const Vec3i& v) { return square_root(squared(v)); }
 
@@ -90,7 +89,9 @@ Hints tangents_of(const ElementPlace& place, const Vec3i& around) {
 }  // namespace
 
 DirectionCoder::DirectionCoder(const AttributeSpec& spec)
-    : ElementCoder(spec), pulls_({0, 0, 0, 0}, 1 << 17), size_({0, kHalf, kQuarter, kQuarter}, 1 << 14) {}
+    : ElementCoder(spec),
+      pulls_({0, 0, 0, 0}, 1 << 17),
+      size_({0, kHalfWeight, kQuarterWeight, kQuarterWeight}, 1 << 14) {}
 
 Vec3i DirectionCoder::direction(Index wedge) const {
   return unit({number(wedge, 0), number(wedge, 1), number(wedge, 2)});
@@ -103,12 +104,13 @@ Vec3i DirectionCoder::mean_of_ring(const ElementPlace& place) const {
 }
 
 void DirectionCoder::note_miss(Index wedge, int miss) {
-  if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualMiss);
+  if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualDirectionMiss);
   misses_[wedge] = static_cast<std::int16_t>(miss);
 }
 
 void DirectionCoder::pass(const ElementPlace& place) {
-  note_miss(place.wedge, place.wedge > 0 && place.wedge <= misses_.size() ? misses_[place.wedge - 1] : kUsualMiss);
+  note_miss(place.wedge,
+            place.wedge > 0 && place.wedge <= misses_.size() ? misses_[place.wedge - 1] : kUsualDirectionMiss);
 }
 
 bool DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored,
@@ -160,7 +162,7 @@ bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_
 bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
   if (place.ring.empty()) {
     if (numbers.size() > 3 && !code_sign(coder, place, false, numbers)) return false;
-    note_miss(place.wedge, kUsualMiss);
+    note_miss(place.wedge, kUsualDirectionMiss);
     const Vec3i near = place.beside != kNoIndex ? direction(place.beside) : Vec3i{};
     return code_point(coder, near, 16 * 12, 1, numbers);
   }
@@ -172,7 +174,7 @@ bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, st
   std::int64_t miss_sum = 0, turn = 0, off = 0;
   for (const Index other : place.ring) {
     const Vec3i there = direction(other);
-    miss_sum += other < misses_.size() ? misses_[other] : kUsualMiss;
+    miss_sum += other < misses_.size() ? misses_[other] : kUsualDirectionMiss;
     turn += length_of(there - around);
     off += length_of(there - (numbers.size() > 3 ? own : place.normals[other]));
   }

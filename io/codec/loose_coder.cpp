@@ -9,7 +9,7 @@ namespace lodestone::detail {
 namespace {
 
 enum Bit : std::uint32_t { kAny, kShapeHigh, kShapeLow, kShapeLow2, kSame, kNew };
-enum Number : std::uint32_t { kCounts, kSizes, kBack, kSectors };
+enum Number : std::uint32_t { kCounts, kSectorSizes, kBack, kSectors };
 
 }  // namespace
 
@@ -81,7 +81,7 @@ bool LooseCoder::code_sector(BitCoder& coder, const PatchMesh& mesh, const Wedge
   else if (!raw(sector.centre, used))
     return false;
   std::int64_t size = static_cast<std::int64_t>(sector.coarse.size());
-  if (sector.shape != SectorShape::Lone) size = code_number(coder, size, kSizes);
+  if (sector.shape != SectorShape::Lone) size = code_number(coder, size, kSectorSizes);
   if (size < 0 || size > static_cast<std::int64_t>(kMostPolygonCorners) - 2) return false;
   if (size == 0 && sector.shape != SectorShape::Lone && sector.shape != SectorShape::Open) return false;
   sector.coarse.resize(static_cast<std::size_t>(size));

@@ -8,15 +8,13 @@ namespace {
 
 constexpr std::size_t kMostFaces = 256;  // of a star that are looked at
 
-constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
-
 }  // namespace
 
 MoveCoder::MoveCoder(int grid_bits)
     : grid_bits_(grid_bits),
       shift_({0, 0, 0, 0}, {0, 0, 0, 0}, 1 << 17),
-      normal_size_({0, kHalf, 0, kQuarter, 0, 0}, 1 << 14),
-      tangent_size_({0, kHalf, 0, 0, kQuarter, 0}, 1 << 14) {}
+      normal_size_({0, kHalfWeight, 0, kQuarterWeight, 0, 0}, 1 << 14),
+      tangent_size_({0, kHalfWeight, 0, 0, kQuarterWeight, 0}, 1 << 14) {}
 
 void MoveCoder::start(int from, int to, std::size_t vertex_count) {
   from_ = from;

@@ -77,4 +77,8 @@ class OnlineFit {
   int samples_ = 0;
 };
 
+/// Weights to begin with.
+inline constexpr int kWholeWeight = 1 << OnlineFit<1>::kFraction;
+inline constexpr int kHalfWeight = kWholeWeight / 2, kQuarterWeight = kHalfWeight / 2;
+
 }  // namespace lodestone::detail

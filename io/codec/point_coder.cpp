@@ -18,15 +18,13 @@ namespace {
 constexpr int kUsualNormalMiss = -48;
 constexpr int kUsualTangentMiss = -32;
 
-constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1), kQuarter = kHalf / 2;
-
 }  // namespace
 
 PointCoder::PointCoder(int grid_bits)
     : grid_bits_(grid_bits),
       shifts_(kSizes, ShiftFit<Ring::kPulls>({-600, 0, 0, 1200}, {-800, 0, 0, 0}, 1 << 17)),
-      normal_size_({0, kHalf, kQuarter, kQuarter}, 1 << 14),
-      tangent_size_({0, kHalf, 0, kHalf}, 1 << 14) {}
+      normal_size_({0, kHalfWeight, kQuarterWeight, kQuarterWeight}, 1 << 14),
+      tangent_size_({0, kHalfWeight, 0, kHalfWeight}, 1 << 14) {}
 
 bool PointCoder::code_base(BitCoder& coder, Vec3i& position) {
   misses_.emplace_back();

@@ -15,9 +15,7 @@ namespace {
 constexpr std::int64_t kOne = 256;          // what the radius is in features
 constexpr int kCoordinateBits = 10;         // of projected positions
 constexpr std::int64_t kMostOff = 1 << 20;  // from the mean, sixteenths
-constexpr int kUsualMiss = -32;
-constexpr int kHalf = 1 << (OnlineFit<1>::kFraction - 1);
-constexpr std::int32_t kWhole = 1 << OnlineFit<1>::kFraction;
+constexpr int kUsualTextureMiss = -32;
 
 Vec3i normal_of(const ElementPlace& place) {
   Vec3i sum;
@@ -33,19 +31,19 @@ Vec3i normal_of(const ElementPlace& place) {
 
 TextureCoder::TextureCoder(const AttributeSpec& spec)
     : ElementCoder(spec),
-      pulls_{Pulls({kWhole, 0, 0}, 1 << 17), Pulls({kWhole, 0, 0}, 1 << 17)},
-      size_{Traits({0, kHalf, 0, kHalf}, 1 << 14), Traits({0, kHalf, 0, kHalf}, 1 << 14)} {}
+      pulls_{Pulls({kWholeWeight, 0, 0}, 1 << 17), Pulls({kWholeWeight, 0, 0}, 1 << 17)},
+      size_{Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14), Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14)} {}
 
 void TextureCoder::note_miss(Index wedge, int miss) {
-  if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualMiss);
+  if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualTextureMiss);
   misses_[wedge] = static_cast<std::int16_t>(miss);
 }
 
-void TextureCoder::pass(const ElementPlace& place) { note_miss(place.wedge, kUsualMiss); }
+void TextureCoder::pass(const ElementPlace& place) { note_miss(place.wedge, kUsualTextureMiss); }
 
 int TextureCoder::miss_around(const ElementPlace& place) const {
   std::int64_t sum = 0;
-  for (const Index other : place.ring) sum += other < misses_.size() ? misses_[other] : kUsualMiss;
+  for (const Index other : place.ring) sum += other < misses_.size() ? misses_[other] : kUsualTextureMiss;
   return static_cast<int>(sum / static_cast<std::int64_t>(place.ring.size()));
 }
 
@@ -185,7 +183,7 @@ bool TextureCoder::code_alone(BitCoder& coder, const ElementPlace& place, std::s
     if (coded < lowest || coded > highest) return false;
     numbers[c] = static_cast<std::int32_t>(coded);
   }
-  note_miss(place.wedge, kUsualMiss);
+  note_miss(place.wedge, kUsualTextureMiss);
   return true;
 }
 

@@ -7,11 +7,11 @@ namespace lodestone::detail {
 namespace {
 
 // Files may have any number of nodes that show a mesh of many targets: what is kept of all their weights together.
-constexpr std::size_t kMostNumbers = 16'000'000;
+constexpr std::size_t kMostWeights = 16'000'000;
 constexpr std::size_t kMostPeaks = 16;  // of one node or mesh
 
 // What is larger by rounding alone is no new peak.
-constexpr float kLarger = 1.001F;
+constexpr float kLargerPeak = 1.001F;
 
 TargetWeights read_weights(const Json& holder) {
   TargetWeights weights;
@@ -80,7 +80,7 @@ bool MorphRanges::fits(const AnimationCurve& curve) const {
 }
 
 bool MorphRanges::spend(std::size_t numbers) {
-  if (numbers > kMostNumbers - spent_) return false;
+  if (numbers > kMostWeights - spent_) return false;
   spent_ += numbers;
   return true;
 }
@@ -105,7 +105,7 @@ std::vector<float> MorphRanges::note_largest(MorphRange& range, std::span<const 
     for (std::size_t i = 0; i < curve->width; ++i) {
       float& largest = range.largest[curve->target + i];
       const CurvePeak peak = find_peak(*curve, i);
-      if (peak.value > static_cast<double>(kLarger * largest)) peaks.push_back(peak);
+      if (peak.value > static_cast<double>(kLargerPeak * largest)) peaks.push_back(peak);
       largest = std::max(largest, static_cast<float>(peak.value));
     }
   }

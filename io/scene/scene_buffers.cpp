@@ -12,7 +12,6 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr std::size_t kKeptAlignment = 8;  // what the widest known content of extensions asks for
 
 /// Who uses the objects of an array. What nobody known uses is kept.

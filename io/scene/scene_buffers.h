@@ -9,6 +9,8 @@
 
 namespace lodestone::detail {
 
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
 /// What becomes of the document's accessors and bufferViews when its meshes are replaced by levels.
 struct BufferPlan {
   GlbBuilder::FreeSlots free_slots;     ///< those that only replaced geometry uses

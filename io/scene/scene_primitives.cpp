@@ -18,8 +18,6 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
-
 /// What replaces the geometry of one primitive.
 struct PrimitiveGeometry {
   Json attributes = Json::object();

@@ -69,16 +69,16 @@ StreamChunk read_entry(std::span<const std::byte> bytes, std::uint32_t& wedge_co
   return chunk;
 }
 
-tl::unexpected<Error> broken(std::string message, std::uint64_t offset) {
+tl::unexpected<Error> broken_at(std::string message, std::uint64_t offset) {
   return fail(ErrorCode::Malformed, "stream: " + std::move(message), offset);
 }
 
 Result<FixedHeader> check_fixed(std::span<const std::byte> bytes) {
   const auto magic = std::as_bytes(std::span(kStreamMagic));
   if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
-    return broken("does not begin with the magic number", 0);
+    return broken_at("does not begin with the magic number", 0);
   if (bytes.size() < kFixedHeaderBytes)
-    return broken(text("ends inside its header after ", bytes.size(), " bytes"), bytes.size());
+    return broken_at(text("ends inside its header after ", bytes.size(), " bytes"), bytes.size());
   const FixedHeader h = read_fixed(bytes);
   if (h.major == 0 || h.major > kStreamMajor)
     return fail(ErrorCode::Unsupported,
@@ -92,13 +92,13 @@ Result<FixedHeader> check_fixed(std::span<const std::byte> bytes) {
                 52);
   const std::uint64_t least = kFixedHeaderBytes + std::uint64_t{h.chunk_count} * h.entry_bytes + kHeaderChecksumBytes;
   if (h.entry_bytes < kDirectoryEntryBytes || h.chunk_count == 0 || h.counts.header_bytes < least)
-    return broken(text("header of ", h.counts.header_bytes, " bytes cannot hold ", h.chunk_count, " chunks"), 12);
+    return broken_at(text("header of ", h.counts.header_bytes, " bytes cannot hold ", h.chunk_count, " chunks"), 12);
   if (h.counts.header_bytes > bytes.size())
-    return broken(text("ends inside its header: ", bytes.size(), " of ", h.counts.header_bytes, " bytes"),
-                  bytes.size());
+    return broken_at(text("ends inside its header: ", bytes.size(), " of ", h.counts.header_bytes, " bytes"),
+                     bytes.size());
   const std::size_t end = h.counts.header_bytes - kHeaderChecksumBytes;
   if (checksum64(bytes.first(end)) != load<std::uint64_t>(bytes, end))
-    return broken("the header's checksum is wrong", end);
+    return broken_at("the header's checksum is wrong", end);
   return h;
 }
 
@@ -110,25 +110,25 @@ Result<void> check_entries(const StreamStart& start) {
     const StreamChunk& c = start.directory.chunks[i];
     const std::uint64_t at = kFixedHeaderBytes + i * kDirectoryEntryBytes;
     if (c.byte_offset != offset || c.byte_length > start.directory.total_bytes - offset)
-      return broken(text("chunk ", i, " does not follow the one before it"), at);
+      return broken_at(text("chunk ", i, " does not follow the one before it"), at);
     if (c.record_begin != record || (i == 0) != (c.record_count == 0))
-      return broken(text("chunk ", i, " has ", c.record_count, " records from ", c.record_begin), at + 32);
+      return broken_at(text("chunk ", i, " has ", c.record_count, " records from ", c.record_begin), at + 32);
     if (c.decoded_bytes / kMaxExpansion > c.byte_length)
       return fail(ErrorCode::LimitExceeded,
                   text("stream: chunk ", i, " of ", c.byte_length, " bytes says it holds ", c.decoded_bytes), at + 16);
     offset += c.byte_length;
     record += c.record_count;
     if (c.vertex_count != h.base_vertex_count + record || start.wedge_counts[i] > h.wedge_count)
-      return broken(
+      return broken_at(
           text("chunk ", i, " ends with ", c.vertex_count, " vertices and ", start.wedge_counts[i], " wedges"),
           at + 48);
     if (!std::isfinite(c.deviation) || !std::isfinite(c.curvature_error))
-      return broken(text("chunk ", i, " has no error"), at + 56);
+      return broken_at(text("chunk ", i, " has no error"), at + 56);
   }
   const bool complete = offset == start.directory.total_bytes && record == h.record_count &&
                         h.vertex_count == std::uint64_t{h.base_vertex_count} + h.record_count &&
                         start.wedge_counts.front() == h.base_wedge_count && start.wedge_counts.back() == h.wedge_count;
-  return complete ? Result<void>{} : broken("the directory does not add up to the header", 16);
+  return complete ? Result<void>{} : broken_at("the directory does not add up to the header", 16);
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ Result<StreamStart> read_stream_start(std::span<const std::byte> bytes) {
   start.directory.version_major = fixed.major;
   start.directory.version_minor = fixed.minor;
   start.directory.total_bytes = fixed.total_bytes;
-  if (fixed.total_bytes < fixed.counts.header_bytes) return broken("is shorter than its header", 16);
+  if (fixed.total_bytes < fixed.counts.header_bytes) return broken_at("is shorter than its header", 16);
   // A later minor version may have grown the fixed part and the entries: the directory ends where the checksum begins.
   const std::size_t directory =
       fixed.counts.header_bytes - kHeaderChecksumBytes - std::size_t{fixed.chunk_count} * fixed.entry_bytes;

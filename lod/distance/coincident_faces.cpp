@@ -5,7 +5,7 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of the diagonal: sheets part by the rounding of decoded positions, no more
+constexpr double kSheetTolerance = 1e-6;  // of the diagonal: sheets part by the rounding of decoded positions, no more
 
 /// Whether vertices are copies of one another: a mesh without has no sheets that lie on one another.
 bool has_copies(const Mesh& mesh) {
@@ -18,7 +18,7 @@ bool has_copies(const Mesh& mesh) {
 }  // namespace
 
 CoincidentFaces::CoincidentFaces(const Mesh& mesh, const SurfaceIndex& index) : index_(index) {
-  if (has_copies(mesh)) tolerance_ = kTolerance * bounding_box(mesh).diagonal();
+  if (has_copies(mesh)) tolerance_ = kSheetTolerance * bounding_box(mesh).diagonal();
 }
 
 std::span<const Index> CoincidentFaces::as_near_as(const SurfaceIndex::Hit& hit) {

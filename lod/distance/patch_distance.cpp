@@ -11,23 +11,22 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kTolerance = 0.1;
+constexpr double kPatchTolerance = 0.1;
 constexpr int kMaxHalvings = 8;
 constexpr int kMaxParts = 4000;  // in all: where surfaces touch almost everywhere no distance found ends the search
-constexpr double kRoundingSlack = 1 + 1e-12;
 
 using Part = std::array<Vec3, 3>;
 
 /// The search for the largest distance from parts of one set to the other set.
-class Search {
+class PatchSearch {
  public:
   /// `found` is the largest distance that some point is known to have: bounds close to it need no narrowing.
-  Search(std::span<const Triangle> to, double& found, int& parts_left)
+  PatchSearch(std::span<const Triangle> to, double& found, int& parts_left)
       : to_(to), found_(found), parts_left_(parts_left) {}
 
   double bound(const Part& part, int halvings_left) {
     const double upper = bound_by_corners(part);
-    if (halvings_left == 0 || --parts_left_ < 0 || upper <= found_ * (1 + kTolerance)) return upper;
+    if (halvings_left == 0 || --parts_left_ < 0 || upper <= found_ * (1 + kPatchTolerance)) return upper;
     const std::size_t i = longest_edge(part);
     const Vec3 middle = (part[i] + part[(i + 1) % 3]) * 0.5;
     Part first = part;
@@ -75,7 +74,7 @@ double patch_distance_bound(std::span<const Triangle> a, std::span<const Triangl
   int parts_left = kMaxParts;
   double bound = 0;
   const auto add_all = [&](std::span<const Triangle> from, std::span<const Triangle> to) {
-    Search search(to, found, parts_left);
+    PatchSearch search(to, found, parts_left);
     for (const Triangle& t : from)
       bound = std::max(bound, search.bound({Vec3(t.a), Vec3(t.b), Vec3(t.c)}, kMaxHalvings));
   };

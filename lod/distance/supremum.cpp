@@ -14,11 +14,10 @@
 #include <numbers>
 #include <utility>
 
+#include "distance/patch_distance.h"
+
 namespace lodestone::detail {
 namespace {
-
-/// Covers rounding: far above that of a distance, far below any tolerance.
-constexpr double kRoundingSlack = 1 + 1e-12;
 
 constexpr std::size_t kFacesOfStep = 256;  // looked at between two words about the progress
 

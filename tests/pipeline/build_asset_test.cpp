@@ -69,7 +69,7 @@ TEST_CASE("a build can be cancelled at any of its calls, and makes no other then
     Watcher whole;
     REQUIRE(build_asset(scene, options, whole));
     std::vector<std::size_t> chosen = {1, 2, whole.calls};
-    while (chosen.size() < (kReduced ? 8 : 30)) chosen.push_back(1 + random.below(whole.calls));
+    while (chosen.size() < (kReduced ? 5 : 30)) chosen.push_back(1 + random.below(whole.calls));
     for (const std::size_t call : chosen)
       for (const std::size_t threads : {1, 3}) {
         CAPTURE(call, whole.calls, threads);
