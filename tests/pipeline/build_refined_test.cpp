@@ -63,10 +63,17 @@ bool has_floats_of(const Mesh& mesh, const Mesh& other) {
   return sorted(mesh) == sorted(other);
 }
 
+TriangleSoup bumpy_ball() { return icosphere(kReduced ? 2 : 3, 0.02, 7); }
+
 const std::vector<TriangleSoup>& shapes() {
-  static const std::vector<TriangleSoup> kAll = {icosphere(3, 0.02, 7), terrain(16, 3),          seam_sphere(16, 12),
-                                                 two_material_grid(12), skinned_cylinder(16, 9), morph_grid(12),
-                                                 slit_grid(12)};
+  constexpr int kSide = kReduced ? 8 : 12;
+  static const std::vector<TriangleSoup> kAll = {bumpy_ball(),
+                                                 terrain(kReduced ? 10 : 16, 3),
+                                                 seam_sphere(kReduced ? 12 : 16, kSide),
+                                                 two_material_grid(kSide),
+                                                 skinned_cylinder(kReduced ? 12 : 16, kReduced ? 6 : 9),
+                                                 morph_grid(kSide),
+                                                 slit_grid(kSide)};
   return kAll;
 }
 
@@ -125,7 +132,7 @@ TEST_CASE(
     CHECK(last.face_count() == scene.meshes()[0].mesh.face_count());
     return has_floats_of(scene.meshes()[0].mesh, last);
   };
-  const Scene ball = scene_of(icosphere(3, 0.02, 7));
+  const Scene ball = scene_of(bumpy_ball());
   BuildOptions usual;
   CHECK(!keeps_floats(ball, usual));
   for (const int levels : {1, 2}) {  // a file of one level is one to build from, too
@@ -149,7 +156,7 @@ TEST_CASE(
   CHECK(keeps_floats(ball, close));
 
   // A shape that is far longer than thick.
-  TriangleSoup rod = icosphere(3, 0, 7);
+  TriangleSoup rod = icosphere(kReduced ? 2 : 3, 0, 7);
   for (Vec3f& p : rod.positions) p = {p.x * 1000, p.y * 0.01F, p.z * 0.01F};
   CHECK(keeps_floats(scene_of(rod), usual));
   for (const BuildOptions& drawn : {refined(), stream_alone()}) {
@@ -163,8 +170,8 @@ TEST_CASE(
                            refined_to_the_end(is_alone ? result.files[0].glb : streams_of(result)[0].bytes));
     };
     CHECK(last(rod, false));
-    CHECK(last(icosphere(3, 0.02, 7), true));
-    CHECK(!last(icosphere(3, 0.02, 7), false));
+    CHECK(last(bumpy_ball(), true));
+    CHECK(!last(bumpy_ball(), false));
   }
 }
 
