@@ -13,6 +13,7 @@
 
 #include "support/cad_shapes.h"
 #include "support/data.h"
+#include "support/deviations.h"
 #include "support/mesh_properties.h"
 
 namespace lodestone::test {
@@ -67,9 +68,9 @@ TEST_CASE("fitting lets no face leave the surface, rough or smooth") {
     const Mesh mesh = mesh_of(soup);
     for (const double ratio : {0.5, 0.3, 0.1}) {
       const Mesh level = level_of(mesh, ratio);
-      const double before = measure_deviation(mesh, level).maximum();
+      const double before = largest_deviation(mesh, level);
       INFO(mesh.face_count() << " faces at " << ratio);
-      CHECK(measure_deviation(mesh, optimise_placement(mesh, level)).maximum() < 1.3 * before);
+      CHECK(largest_deviation(mesh, optimise_placement(mesh, level)) < 1.3 * before);
     }
   }
 }
@@ -82,7 +83,7 @@ TEST_CASE("no fitted vertex leaves the original's box by more than the level was
     for (const double ratio : {0.3, 0.1, 0.0}) {
       const Mesh level = level_of(mesh, ratio);
       if (level.face_count() == 0) continue;
-      const double off = measure_deviation(mesh, level).maximum();
+      const double off = largest_deviation(mesh, level);
       double out = 0;
       for (const Vec3f& stored : optimise_placement(mesh, level).positions) {
         const Vec3 p(stored), below = box.low - p, above = p - box.high;
@@ -174,7 +175,7 @@ TEST_CASE("levels that lie on the original stay there to the last bit that count
   for (const TriangleSoup& soup : {cut_box(24), askew(cut_box(24)), crowded_box(6), askew(crowded_box(6))}) {
     const Mesh mesh = mesh_of(soup);
     const Mesh fitted = optimise_placement(mesh, level_of(mesh, 0.2));
-    CHECK(measure_deviation(mesh, fitted).maximum() < 2e-6 * bounding_box(mesh).diagonal());
+    CHECK(largest_deviation(mesh, fitted) < 2e-6 * bounding_box(mesh).diagonal());
   }
   for (const TriangleSoup& soup : {rod(96), askew(rod(96)), turned_shaft(20)}) {
     const Mesh mesh = mesh_of(soup);

@@ -14,6 +14,7 @@
 
 #include "support/catch.h"
 #include "support/data.h"
+#include "support/deviations.h"
 #include "support/gltf_shapes.h"
 #include "support/mesh_properties.h"
 #include "support/shapes.h"
@@ -100,7 +101,7 @@ TEST_CASE("a refined file shows one level, and its stream leads to the whole mes
     CHECK(last.wedge_count() == whole.wedge_count());
     CHECK(last.attributes.size() == whole.attributes.size());
     const double step = bounding_box(whole).diagonal() / ((1 << 14) - 1);
-    CHECK(measure_deviation(last, whole).maximum() <= step);
+    CHECK(largest_deviation(last, whole) <= step);
     CHECK(result.levels[0].deviation.maximum() <= step);
     CHECK(result.levels[1].deviation.maximum() <= 1.01 * result.levels[1].deviation_bound + step);
 
@@ -212,7 +213,7 @@ TEST_CASE("a stream alone leads to the mesh, through the levels that it is measu
     if (mesh.groups.size() > 1) CHECK(mesh.groups[1].material == 3);
     const Mesh last = extract_level(mesh, kNoIndex);
     CHECK(last.face_count() == whole.face_count());
-    CHECK(measure_deviation(last, whole).maximum() <= 2 * result.quantisation_error);
+    CHECK(largest_deviation(last, whole) <= 2 * result.quantisation_error);
     CHECK(result.levels[0].deviation.maximum() <= 2 * result.quantisation_error);
     CHECK(result.levels[1].deviation.maximum() <= 1.01 * result.levels[1].deviation_bound);
     for (std::size_t i = 0; i < 2; ++i) {

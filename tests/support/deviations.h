@@ -64,6 +64,15 @@ inline Mesh with_holes(const Mesh& mesh, double share, std::uint64_t seed) {
   return raw_mesh(mesh.positions, std::move(corners));
 }
 
+/// How far meshes lie apart, the larger of both ways. Few samples do: they are for the means, and take most of the
+/// time.
+template <class Surface>
+double largest_deviation(const Surface& a, const Surface& b) {
+  DeviationOptions options;
+  options.sample_count = 1000;
+  return measure_deviation(a, b, options).maximum();
+}
+
 inline double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   const double ee = squared_length(b - a);
   const double t = ee > 0 ? std::clamp(dot(p - a, b - a) / ee, 0.0, 1.0) : 0;
