@@ -8,7 +8,7 @@ namespace lodestone::detail {
 namespace {
 
 // Enough to tell a face's distance from the surface it stands for; more costs time and gains nothing measurable.
-constexpr std::size_t kMaxPointsOfFace = 5;
+constexpr std::size_t kMaxPointsOfFace = 8;
 
 /// Adds the faces that take over from a sector's fine ones: its coarse faces, or the one beyond where nothing is left.
 void add_heirs(const SectorPatch& sector, std::vector<Index>& faces) {
