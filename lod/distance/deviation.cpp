@@ -311,24 +311,47 @@ double measure_means(const Surface& from, const Surface& to, std::size_t sample_
 // Vertices that are looked at before all others: a maximum near the true one from the start saves most bounds.
 constexpr std::size_t kScouted = 1000;
 
-/// Narrows one direction's maximum on its own; leaves mean and rms as they are.
-void narrow_maximum(const Surface& from, const Surface& to, const DeviationOptions& options, Goal goal,
-                    OneSidedDeviation& result) {
-  SurfaceBounds bounds = have_same_faces(from.mesh, to.mesh) ? bounds_by_correspondence(from.mesh, to.mesh)
-                                                             : SurfaceBounds(from.mesh, false);
-  TargetSurface to_surface(to.mesh, to.opposite, to.index);
-  PatchBound to_patch(to.mesh, to.opposite);
-  SupremumSearch search(from.mesh, to_surface, to_patch, bounds);
-  search.scout(kScouted, goal);
-  search.visit_vertices(goal);
-  search.split_faces(goal, options.budget);
+double larger_diagonal(const Mesh& a, const Mesh& b) {
+  return std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
+}
+
+/// One direction's search for its maximum, with what it needs.
+struct DirectedSearch {
+  DirectedSearch(const Surface& from, const Surface& to)
+      : bounds(have_same_faces(from.mesh, to.mesh) ? bounds_by_correspondence(from.mesh, to.mesh)
+                                                   : SurfaceBounds(from.mesh, false)),
+        to_surface(to.mesh, to.opposite, to.index),
+        to_patch(to.mesh, to.opposite),
+        search(from.mesh, to_surface, to_patch, bounds) {}
+
+  SurfaceBounds bounds;
+  TargetSurface to_surface;
+  PatchBound to_patch;
+  SupremumSearch search;
+};
+
+void take_maximum(const SupremumSearch& search, OneSidedDeviation& result) {
   const OneSidedDeviation narrowed = search.result();
   result.maximum = narrowed.maximum;
   result.maximum_bound = narrowed.maximum_bound;
 }
 
-double larger_diagonal(const Mesh& a, const Mesh& b) {
-  return std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
+/// Narrows the maximum of each direction by itself, or of both together; leaves mean and rms as they are.
+void narrow_maxima(const Surface& a, const Surface& b, const DeviationOptions& options, Deviation& result) {
+  DirectedSearch forward(a, b), backward(b, a);
+  const Goal goal = detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), 0);
+  Goal forward_goal = goal, backward_goal = goal;
+  forward.search.scout(kScouted, forward_goal);
+  backward.search.scout(kScouted, backward_goal);
+  if (options.each_way) {
+    forward.search.narrow(forward_goal, options.budget);
+    backward.search.narrow(backward_goal, options.budget);
+  } else {
+    forward_goal.found = std::max(forward_goal.found, backward_goal.found);
+    detail::narrow_both(forward.search, backward.search, forward_goal, options.budget);
+  }
+  take_maximum(forward.search, result.forward);
+  take_maximum(backward.search, result.backward);
 }
 
 /// The deviation where a mesh has no faces: the means are as the maximum.
@@ -364,15 +387,13 @@ Deviation measure_deviation(const MeasuredSurface& first, const MeasuredSurface&
                             const DeviationOptions& options) {
   const Surface &a = first.impl(), &b = second.impl();
   if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return deviation_of_empty(a.mesh, b.mesh);
-  const Goal goal = detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), 0);
   Deviation result;
   const auto means = [&] { return options.progress.part(kMeansShare); };
   result.mean_normal_angle = measure_means(a, b, options.sample_count, means(), result.forward);
   if (!options.progress.add(0)) return unmeasured();
   measure_means(b, a, options.sample_count, means(), result.backward);
   if (!options.progress.add(0)) return unmeasured();
-  narrow_maximum(a, b, options, goal, result.forward);
-  narrow_maximum(b, a, options, goal, result.backward);
+  narrow_maxima(a, b, options, result);
   options.progress.reach(1);
   return result;
 }
@@ -389,13 +410,9 @@ Deviation measure_maximum(const MeasuredSurface& first, const MeasuredSurface& s
                           double enough) {
   const Surface &a = first.impl(), &b = second.impl();
   if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return detail::maximum_of_empty(a.mesh, b.mesh);
-  SurfaceBounds a_bounds(a.mesh, false), b_bounds(b.mesh, false);
-  TargetSurface a_surface(a.mesh, a.opposite, a.index), b_surface(b.mesh, b.opposite, b.index);
-  PatchBound a_patch(a.mesh, a.opposite), b_patch(b.mesh, b.opposite);
-  SupremumSearch forward(a.mesh, b_surface, b_patch, a_bounds);
-  SupremumSearch backward(b.mesh, a_surface, a_patch, b_bounds);
-  return detail::narrow_both(forward, backward, detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), enough),
-                             options.budget);
+  DirectedSearch forward(a, b), backward(b, a);
+  return detail::narrow_both(forward.search, backward.search,
+                             detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), enough), options.budget);
 }
 
 }  // namespace lodestone

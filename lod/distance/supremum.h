@@ -92,6 +92,12 @@ class SupremumSearch {
   /// Splits faces until all bounds meet the goal or `budget` parts were halved.
   void split_faces(Goal& goal, std::size_t budget);
 
+  /// Both, one after the other.
+  void narrow(Goal& goal, std::size_t budget) {
+    visit_vertices(goal);
+    split_faces(goal, budget);
+  }
+
   /// Starts from a point of the mesh that is likely far away.
   void probe(const Vec3& point, Goal& goal) { query(point, kNoIndex, kNoIndex, goal); }
   /// Starts from a distance that a point of `face` is known to have.

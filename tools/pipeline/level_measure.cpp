@@ -30,6 +30,7 @@ DeviationOptions level_measure(const Progress& progress, double share = 1) {
   options.progress = progress;
   options.sample_count = static_cast<std::size_t>(share * kSceneSamples);
   options.relative_tolerance = 0.01;
+  options.each_way = false;
   return options;
 }
 

@@ -36,6 +36,9 @@ struct DeviationOptions {
   double absolute_tolerance = 0;      ///< mesh units; 0: 1e-7 of the diagonal
   std::size_t budget =
       1'000'000;  ///< parts of faces to halve for narrowing the maximum, each way; about 100 bytes each
+  /// Whether the maximum is narrowed each way by itself; else only the larger one is, and the other as far as that
+  /// needs.
+  bool each_way = true;
   /// Cancelled, measuring ends: maximum_bound is one still, infinity at worst, and the rest says nothing.
   Progress progress;
 };
