@@ -38,14 +38,16 @@ void SurfaceWalk::update(const Mesh& mesh) {
   for (Index f = 0; f < slabs_.size(); ++f) add_neighbours(f);
 }
 
-/// Returns how far a point lies from a face's edges, inwards, and from its plane.
-inline std::array<float, 4> SurfaceWalk::Slab::distances(const Vec3& p) const {
-  const float px = static_cast<float>(p.x - static_cast<double>(origin_x));
-  const float py = static_cast<float>(p.y - static_cast<double>(origin_y));
-  const float pz = static_cast<float>(p.z - static_cast<double>(origin_z));
-  std::array<float, 4> d;
-  for (std::size_t i = 0; i < 4; ++i) d[i] = x[i] * px + y[i] * py + z[i] * pz + offset[i];
-  return d;
+/// Inlined, its loops would be taken apart into lanes again by what asks for one of them.
+[[gnu::noinline]] SurfaceWalk::Lie SurfaceWalk::Lie::of(const Vec3& p, const Slab& slab) {
+  const Vec3 from_origin = p - Vec3(slab.origin());
+  const auto [px, py, pz] = to_float(from_origin);
+  Lie lie;
+  for (std::size_t i = 0; i < 4; ++i)
+    lie.distance[i] = slab.x[i] * px + slab.y[i] * py + slab.z[i] * pz + slab.offset[i];
+  const float height = lie.distance[3];
+  for (std::size_t i = 0; i < 4; ++i) lie.slack[i] = lie.distance[i] * slab.run[i] - height * slab.rise[i];
+  return lie;
 }
 
 /// Returns a face's slab without what depends on its neighbours. A face without an area has every point beyond its
@@ -56,7 +58,7 @@ SurfaceWalk::Slab SurfaceWalk::slab_of(Index face) const {
   const Vec3 area = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double twice_area = length(area);
   Slab slab{};
-  slab.origin_x = triangle.a.x, slab.origin_y = triangle.a.y, slab.origin_z = triangle.a.z;
+  slab.set_origin(triangle.a);
   slab.across.fill(kNoIndex);
   slab.offset.fill(-1);
   const auto set = [&](std::size_t k, const Vec3& direction, double offset) {
@@ -94,7 +96,7 @@ void SurfaceWalk::add_neighbours(Index face) {
     const Triangle& there = triangles_[face_of_corner(other)];
     const Index apex = previous_corner(other);
     const Vec3f& beyond = apex % 3 == 0 ? there.a : apex % 3 == 1 ? there.b : there.c;
-    const std::array<float, 4> distances = slab.distances(Vec3(beyond));
+    const std::array<float, 4> distances = Lie::of(Vec3(beyond), slab).distance;
     slab.rise[k] = distances[3];
     slab.run[k] = -distances[k];
   }
@@ -121,14 +123,13 @@ bool SurfaceWalk::walk_over(const Vec3& p, Index& face, Place& place) const {
   Index previous = kNoIndex;
   for (int step = 0; step < kMostSteps; ++step) {
     const Slab& slab = slabs_[face];
-    const std::array<float, 4> d = slab.distances(p);
+    const Lie lie = Lie::of(p, slab);
+    const std::array<float, 4>& d = lie.distance;
     const std::size_t k = d[0] <= d[1] ? (d[0] <= d[2] ? 0 : 2) : (d[1] <= d[2] ? 1 : 2);
     const float squared = d[3] * d[3];
     if (d[k] >= 0) {
       if (squared > least) return false;
-      bool folds = false;
-      for (std::size_t i = 0; i < 3; ++i) folds |= !(d[3] * slab.rise[i] <= d[i] * slab.run[i]);
-      if (folds) return false;
+      if (!(lie.slack[0] >= 0) || !(lie.slack[1] >= 0) || !(lie.slack[2] >= 0)) return false;
       place.face = face;
       place.on.squared_distance = static_cast<double>(squared);
       for (std::size_t i = 0; i < 3; ++i)

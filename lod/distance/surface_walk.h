@@ -31,21 +31,33 @@ class SurfaceWalk {
   /// minimum of the distance, nearly always the nearest point of all where `face` lies near `p`.
   Place nearest_from(const Vec3& p, Index face) const;
 
+  /// Returns a face's normal, of length 1; 0 where it has none.
+  Vec3 normal(Index face) const {
+    const Slab& slab = slabs_[face];
+    return {slab.x[3], slab.y[3], slab.z[3]};
+  }
+
  private:
   /// What says whether a point lies over the inside of a face, and beyond which edge if not. Edge k leaves corner k;
   /// the entries of arrays of four are for the three edges, and for the plane.
   struct alignas(64) Slab {
-    std::array<float, 4> x, y, z;  // Directions: from each edge into the face, and the normal; of length 1.
-    std::array<float, 4> offset;   // What to add to the products with a point, to have distances.
-    std::array<float, 3> rise;     // How high the corner beyond each edge lies over the plane,
-    float origin_x;                // (where points are counted from: the first corner)
-    std::array<float, 3> run;      // and how far from the edge.
-    float origin_y;
-    std::array<float, 3> inverse_height;  // Of the face, from each edge to the corner on the other side.
-    float origin_z;
-    std::array<Index, 3> across;  // The face beyond each edge, where there is just one.
+    std::array<float, 4> x, y, z;         // Directions: from each edge into the face, and the normal; of length 1.
+    std::array<float, 4> offset;          // What to add to the products with a point, to have distances.
+    std::array<float, 4> rise;            // How high the corner beyond each edge lies over the plane,
+    std::array<float, 4> run;             // and how far from the edge.
+    std::array<float, 4> inverse_height;  // Of the face, from each edge to the corner on the other side.
+    std::array<Index, 3> across;          // The face beyond each edge, where there is just one.
 
-    std::array<float, 4> distances(const Vec3& p) const;
+    /// Where points are counted from, the first corner: it lies in the lanes of the plane which say nothing.
+    Vec3f origin() const { return {rise[3], run[3], inverse_height[3]}; }
+    void set_origin(const Vec3f& p) { rise[3] = p.x, run[3] = p.y, inverse_height[3] = p.z; }
+  };
+
+  /// How a point lies to a slab, in lanes like its own.
+  struct alignas(16) Lie {
+    std::array<float, 4> distance;  // From the edges, inwards, and from the plane.
+    std::array<float, 4> slack;     // Below 0 where the face beyond folds up so far that the point lies before it.
+    static Lie of(const Vec3& p, const Slab& slab);
   };
 
   /// A point of a triangle near to another point.

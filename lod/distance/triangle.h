@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <lodestone/core/mesh.h>
 
@@ -81,8 +82,9 @@ inline Vec3 nearest_on_triangle(const Vec3& p, const Triangle& triangle) {
 /// The k-th of a sequence of points that spreads evenly over a triangle: see point_on_face.
 inline Vec3 point_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t k) {
   const double n = static_cast<double>(k);
-  double u = std::fmod(0.5 + n * 0.7548776662466927, 1.0);
-  double v = std::fmod(0.5 + n * 0.5698402909980532, 1.0);
+  const auto fraction = [](double x) { return x - static_cast<double>(static_cast<std::int64_t>(x)); };
+  double u = fraction(0.5 + n * 0.7548776662466927);
+  double v = fraction(0.5 + n * 0.5698402909980532);
   if (u + v > 1) u = 1 - u, v = 1 - v;
   return a * (1 - u - v) + b * u + c * v;
 }

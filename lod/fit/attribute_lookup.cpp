@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
-#include <map>
-#include <queue>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <lodestone/core/detail/finite_values.h>
@@ -57,38 +58,57 @@ class SeamedSurface {
     }
   }
 
-  /// Walks from the faces at a wedge towards `p`, nearest faces first, until it comes no nearer.
-  SurfacePlace nearest_from(Index wedge, const Vec3& p) const {
-    using Step = std::pair<double, Index>;  // squared distance, face
-    std::priority_queue<Step, std::vector<Step>, std::greater<>> waiting;
-    std::map<Index, Barycentric> seen;
-    const auto visit = [&](Index face) {
-      const auto [entry, is_new] = seen.try_emplace(face);
-      if (!is_new) return;
-      entry->second = nearest_weights(p, triangle_of(mesh_, face));
-      waiting.emplace(entry->second.squared_distance, face);
-    };
-    for (const Index corner : wedge_corners_[wedge]) visit(face_of_corner(corner));
-    SurfacePlace best;
-    double least = std::numeric_limits<double>::infinity();
-    for (int patience = kPatience; !waiting.empty() && patience > 0; --patience) {
-      const auto [distance, face] = waiting.top();
-      waiting.pop();
-      if (distance < least) {
-        least = distance;
-        best = {face, seen[face].weights};
-        patience = kPatience;
-      }
-      for (Index k = 0; k < 3; ++k)
-        if (across_[3 * face + k] != kNoIndex) visit(face_of_corner(across_[3 * face + k]));
-    }
-    return best;
-  }
+  const Mesh& mesh() const { return mesh_; }
+  std::span<const Index> corners_of(Index wedge) const { return wedge_corners_[wedge]; }
+  /// Returns the face beyond the edge that faces a corner, kNoIndex where there is a seam.
+  Index across(Index corner) const { return across_[corner] != kNoIndex ? face_of_corner(across_[corner]) : kNoIndex; }
 
  private:
   const Mesh& mesh_;
   std::vector<Index> across_;
   Grouping wedge_corners_;
+};
+
+/// Searches on a surface, one after the other, with memory of their own.
+class SurfaceSearch {
+ public:
+  explicit SurfaceSearch(const SeamedSurface& surface) : surface_(surface), seen_in_(surface.mesh().face_count(), 0) {}
+
+  /// Walks from the faces at a wedge towards `p`, nearest faces first, until it comes no nearer.
+  SurfacePlace nearest_from(Index wedge, const Vec3& p) {
+    ++search_;
+    waiting_.clear();
+    for (const Index corner : surface_.corners_of(wedge)) visit(p, face_of_corner(corner));
+    Step best{std::numeric_limits<double>::infinity(), kNoIndex};
+    for (int patience = kPatience; !waiting_.empty() && patience > 0; --patience) {
+      std::pop_heap(waiting_.begin(), waiting_.end(), std::greater<>());
+      const Step step = waiting_.back();
+      waiting_.pop_back();
+      if (step.first < best.first) {
+        best = step;
+        patience = kPatience;
+      }
+      for (Index corner = 3 * step.second; corner < 3 * step.second + 3; ++corner)
+        if (const Index face = surface_.across(corner); face != kNoIndex) visit(p, face);
+    }
+    if (best.second == kNoIndex) return {};
+    return {best.second, nearest_weights(p, triangle_of(surface_.mesh(), best.second)).weights};
+  }
+
+ private:
+  using Step = std::pair<double, Index>;  // squared distance, face
+
+  void visit(const Vec3& p, Index face) {
+    if (std::exchange(seen_in_[face], search_) == search_) return;
+    const Vec3 nearest = nearest_on_triangle(p, triangle_of(surface_.mesh(), face));
+    waiting_.emplace_back(squared_length(p - nearest), face);
+    std::push_heap(waiting_.begin(), waiting_.end(), std::greater<>());
+  }
+
+  const SeamedSurface& surface_;
+  Index search_ = 0;
+  std::vector<Index> seen_in_;  // by face: the last search that has come there
+  std::vector<Step> waiting_;   // a heap, the nearest first
 };
 
 bool same_bytes(const Mesh& a, Index wedge_a, const Mesh& b, Index wedge_b) {
@@ -202,12 +222,13 @@ AttributeLookup::~AttributeLookup() = default;
 
 void AttributeLookup::look_up(const Mesh& before, Mesh& level) const {
   if (impl_ == nullptr) return;
+  SurfaceSearch search(impl_->surface);
   for (Index w = 0; w < level.wedge_count(); ++w) {
     const Index v = level.wedge_vertex[w];
     if (level.positions[v] == before.positions[v]) continue;
     const Index source = impl_->finder.find(before, w);
     if (source == kNoIndex) continue;
-    const SurfacePlace place = impl_->surface.nearest_from(source, Vec3(level.positions[v]));
+    const SurfacePlace place = search.nearest_from(source, Vec3(level.positions[v]));
     for (std::size_t i = 0; i < level.attributes.size() && place.face != kNoIndex; ++i)
       if (!impl_->values[i].empty()) blend(impl_->original, impl_->values[i], place, level.attributes[i], w);
   }

@@ -8,7 +8,7 @@
 #include <lodestone/core/detail/grouping.h>
 #include <lodestone/core/detail/texture_areas.h>
 
-#include "distance/triangle.h"
+#include "distance/point_triangle.h"
 
 // Edge swaps that lower the fit's energy, as in Hoppe, DeRose, Duchamp, McDonald, Stuetzle: Mesh optimization (SIGGRAPH
 // 1993). Departures: edges are tried once, in order, rather than at random; vertices stay where they are meanwhile; and
@@ -30,7 +30,11 @@ class EdgeTurner {
         samples_(samples),
         samples_of_face_(mesh.face_count(), samples.size(), [&](Index i) { return samples[i].face; }),
         textures_(mesh),
-        fixed_(fixed) {}
+        fixed_(fixed),
+        error_(mesh.face_count(), 0) {
+    for (const SurfaceSample& sample : samples)
+      error_[sample.face] += sample.weight * norm.error(sample.squared_distance);
+  }
 
   std::size_t run() {
     std::size_t count = 0;
@@ -61,10 +65,10 @@ class EdgeTurner {
     for (const auto& corners : edge.layers) quads_.push_back(quad_at(corners));
     const Quad& quad = quads_.front();
     const auto is_taken = [&](const Quad& q) { return taken_[q.face[0]] != 0 || taken_[q.face[1]] != 0; };
-    if (std::any_of(quads_.begin(), quads_.end(), is_taken) || has_edge(quad.c, quad.d)) return false;
+    if (std::any_of(quads_.begin(), quads_.end(), is_taken)) return false;
     const auto turns = [&](const Quad& q) { return turns_texture(q); };
     if (!keeps_shape(quad) || std::any_of(quads_.begin(), quads_.end(), turns)) return false;
-    if (!is_nearer() || !is_let_pass(quad)) return false;
+    if (!is_nearer() || has_edge(quad.c, quad.d) || !is_let_pass(quad)) return false;
     for (const Quad& q : quads_) {
       for (std::size_t i = 0; i < 2; ++i) taken_[q.face[i]] = 1;
       set_face(q.face[0], {q.a, q.d, q.c});
@@ -90,9 +94,6 @@ class EdgeTurner {
 
   Index vertex(Index wedge) const { return mesh_.wedge_vertex[wedge]; }
   Vec3 position(Index wedge) const { return Vec3(mesh_.positions[vertex(wedge)]); }
-  Triangle triangle(Index a, Index b, Index c) const {
-    return {mesh_.positions[vertex(a)], mesh_.positions[vertex(b)], mesh_.positions[vertex(c)]};
-  }
   void set_face(Index face, const std::array<Index, 3>& wedges) {
     std::copy(wedges.begin(), wedges.end(), mesh_.corner_wedge.begin() + 3 * std::ptrdiff_t{face});
   }
@@ -123,39 +124,43 @@ class EdgeTurner {
     return false;
   }
 
-  bool is_nearer() const {
-    double before = 0;
-    for_samples([&](const SurfaceSample& sample) {
-      before += sample.weight * norm_.error(sample.squared_distance);
-      return true;
-    });
+  /// Whether the samples on the edge's faces would be nearer to the new ones.
+  bool is_nearer() {
     const Quad& q = quads_.front();
-    const Triangle first = triangle(q.a, q.d, q.c);
-    const Triangle second = triangle(q.d, q.b, q.c);
-    const double enough = kGain * before;
+    gather_samples(position(q.a));
+    const Vec3 origin = position(q.a), a = Vec3(), b = position(q.b) - origin, c = position(q.c) - origin,
+               d = position(q.d) - origin;
+    for (std::vector<float>& squared : squared_distances_) squared.resize(points_.padded_size());
+    squared_distances(points_, {a, d, c}, squared_distances_[0].data());
+    squared_distances(points_, {d, b, c}, squared_distances_[1].data());
+    const double enough = kGain * error_before();
     double after = 0;
-    return for_samples([&](const SurfaceSample& sample) {
-             const double near_first = squared_length(sample.position - nearest_on_triangle(sample.position, first));
-             const double near_second = squared_length(sample.position - nearest_on_triangle(sample.position, second));
-             after += sample.weight * norm_.error(std::min(near_first, near_second));
-             return after < enough;
-           }) &&
-           after < enough;
+    for (std::size_t i = 0; i < points_.size() && after < enough; ++i)
+      after += weights_[i] * norm_.error(double{std::min(squared_distances_[0][i], squared_distances_[1][i])});
+    return after < enough;
   }
 
-  /// Visits the samples on the edge's faces until `visit` returns false; returns whether it never did.
-  template <class Visit>
-  bool for_samples(const Visit& visit) const {
+  void gather_samples(const Vec3& origin) {
+    points_.clear();
+    weights_.clear();
     for (const Quad& layer : quads_)
       for (const Index face : layer.face)
-        for (const Index i : samples_of_face_[face])
-          if (!visit(samples_[i])) return false;
-    return true;
+        for (const Index i : samples_of_face_[face]) {
+          points_.add(samples_[i].position - origin);
+          weights_.push_back(samples_[i].weight);
+        }
+  }
+
+  double error_before() const {
+    double sum = 0;
+    for (const Quad& layer : quads_)
+      for (const Index face : layer.face) sum += error_[face];
+    return sum;
   }
 
   bool is_let_pass(const Quad& q) const {
     const Vec3 a = position(q.a), b = position(q.b), c = position(q.c), d = position(q.d);
-    return guard_.lets_pass({{{a, d, c}, {d, b, c}}}, {{{a, b, c}, {b, a, d}}});
+    return guard_.lets_pass({{{a, d, c}, {d, b, c}}}, {{{a, b, c}, {b, a, d}}}, q.face);
   }
 
   Mesh& mesh_;
@@ -168,7 +173,12 @@ class EdgeTurner {
   std::span<const std::uint8_t> fixed_;  // by vertex
   std::vector<std::uint8_t> taken_;      // by face
   std::vector<std::uint64_t> added_;     // by their keys
-  std::vector<Quad> quads_;              // of the edge looked at: one in each sheet
+  std::vector<double> error_;            // by face, of its samples as they were at the start
+  // Of the edge looked at:
+  std::vector<Quad> quads_;  // one in each sheet
+  PointBatch points_;        // the samples on its faces, from one of its vertices
+  std::vector<double> weights_;
+  std::array<std::vector<float>, 2> squared_distances_;  // of the points from the new faces
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "fit/face_guard.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "distance/triangle.h"
 
@@ -14,90 +15,115 @@ constexpr double kSliverKeeps = 0.98;  // of its shape, in one go, where that is
 constexpr double kFacesWell = 0.5;     // a face that looked within 60° of the original's way …
 constexpr double kTurnsLittle = 0.87;  // … and has turned by less than 30° since does not look away from there
 
+Vec3 area_vector(const Corners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
+
 double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({squared_length(b - a), squared_length(c - b), squared_length(a - c)});
   return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
-bool keeps_direction(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before) {
-  const Vec3 normal = cross(b - a, c - a);
-  return dot(normal, before) > kMinCosine * length(normal) * length(before);
+bool keeps_direction(const Vec3& normal, const Vec3& before) {
+  const double product = dot(normal, before);
+  return product > 0 && product * product > kMinCosine * kMinCosine * squared_length(normal) * squared_length(before);
+}
+
+/// What was a sliver may stay one, as long as it gets hardly worse.
+bool stays_upright(const Corners& before, const Corners& now) {
+  const auto& [a, b, c] = now;
+  if (!keeps_direction(area_vector(now), area_vector(before))) return false;
+  const double now_shape = shape(a, b, c);
+  return now_shape > kMinShape || now_shape >= kSliverKeeps * shape(before[0], before[1], before[2]);
 }
 
 }  // namespace
 
 bool is_upright(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& before) {
-  return keeps_direction(a, b, c, before) && shape(a, b, c) > kMinShape;
+  return keeps_direction(cross(b - a, c - a), before) && shape(a, b, c) > kMinShape;
 }
 
-void keep_faces_upright(const Mesh& mesh, std::vector<Vec3f>& positions) {
+TentativeMoves::TentativeMoves(const Mesh& level, std::vector<Vec3f> positions)
+    : level_(level), positions_(std::move(positions)), changed_at_(level.vertex_count(), 0) {
+  for (Index v = 0; v < positions_.size(); ++v)
+    if (is_moved(v)) changed_at_[v] = kStart;
+}
+
+bool TentativeMoves::has_news(Index face, Index time) const {
+  bool moved = false, changed = false;
+  for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
+    const Index v = level_.corner_vertex(corner);
+    moved = moved || is_moved(v);
+    changed = changed || changed_at_[v] >= time;
+  }
+  return moved && changed;
+}
+
+void TentativeMoves::put_back(Index face) {
+  for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
+    const Index v = level_.corner_vertex(corner);
+    if (!is_moved(v)) continue;
+    positions_[v] = level_.positions[v];
+    changed_at_[v] = time_;
+  }
+}
+
+void keep_faces_upright(TentativeMoves& moves, Index& looked_at) {
   for (bool changed = true; changed;) {
     changed = false;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-      const Index v[3] = {mesh.corner_vertex(3 * f), mesh.corner_vertex(3 * f + 1), mesh.corner_vertex(3 * f + 2)};
-      const bool moved = std::any_of(v, v + 3, [&](Index i) { return !(positions[i] == mesh.positions[i]); });
-      if (!moved) continue;
-      const Vec3 a = mesh.corner_position(3 * f);
-      const Vec3 b = mesh.corner_position(3 * f + 1);
-      const Vec3 c = mesh.corner_position(3 * f + 2);
-      const Vec3 p(positions[v[0]]), q(positions[v[1]]), r(positions[v[2]]);
-      // What was a sliver may stay one, as long as it gets hardly worse.
-      const double new_shape = shape(p, q, r);
-      if (keeps_direction(p, q, r, cross(b - a, c - a)) &&
-          (new_shape > kMinShape || new_shape >= kSliverKeeps * shape(a, b, c)))
-        continue;
-      for (const Index i : v) positions[i] = mesh.positions[i];
+    const Index since = std::exchange(looked_at, moves.next_time());
+    for (Index f = 0; f < moves.level().face_count(); ++f) {
+      if (!moves.has_news(f, since) || stays_upright(moves.before(f), moves.now(f))) continue;
+      moves.put_back(f);
       changed = true;
     }
   }
+}
+
+void OriginalGuard::start_from(const std::vector<Index>& faces) {
+  standing_.resize(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) standing_[f].near = faces[f];
 }
 
 OriginalGuard::Survey OriginalGuard::survey(const Mesh& level, const SampleNorm& norm) {
   standing_.resize(level.face_count());
   Survey result;
   for (Index f = 0; f < level.face_count(); ++f) {
+    Standing& standing = standing_[f];
+    standing = Standing(corners_at(level, level.positions, f), standing.near);
     const double share = 0.5 * length(area_vector(level, f)) / kPointsOfFace;
-    Distances inside{};
-    standing_[f] = look_at(corners_of(level, f, level.positions), standing_[f].near, &inside);
-    result.farthest = std::max(result.farthest, standing_[f].distance);
-    for (const double distance : inside) result.error += share * norm.error(distance * distance);
+    for (const double distance : look_inside(standing)) result.error += share * norm.error(distance * distance);
+    result.farthest = std::max(result.farthest, standing.distance);
   }
   return result;
 }
 
-bool OriginalGuard::keep_faces_near(const Mesh& level, std::vector<Vec3f>& positions) {
+bool OriginalGuard::keep_faces_near(TentativeMoves& moves, Index& looked_at) {
   bool all_near = true;
-  for (Index f = 0; f < level.face_count(); ++f) {
-    const Corners before = corners_of(level, f, level.positions);
-    const Corners now = corners_of(level, f, positions);
+  const Index since = std::exchange(looked_at, moves.next_time());
+  for (Index f = 0; f < moves.level().face_count(); ++f) {
+    if (!moves.has_news(f, since)) continue;
+    const Corners before = moves.before(f), now = moves.now(f);
     Standing& standing = standing_[f];
-    if (now == before || is_surely_fine(standing, now)) continue;
+    if (is_surely_fine(standing, now)) continue;
     standing = look_at(now, standing.near);
     const bool looks_away = standing.facing < 0 && look_at(before, standing.near).facing >= 0;
     if (standing.distance <= reach_ && !looks_away) continue;
     all_near = false;
-    for (Index k = 0; k < 3; ++k) {
-      const Index v = level.corner_vertex(3 * f + k);
-      positions[v] = level.positions[v];
-    }
+    moves.put_back(f);
   }
   return all_near;
 }
 
-bool OriginalGuard::lets_pass(const std::array<Corners, 2>& now, const std::array<Corners, 2>& before) const {
+bool OriginalGuard::lets_pass(const std::array<Corners, 2>& now, const std::array<Corners, 2>& before,
+                              const std::array<Index, 2>& faces) const {
+  const Index near = standing_[faces[0]].near;
   bool looks_away = false;
   for (const Corners& corners : now) {
-    const Standing standing = look_at(corners, kNoIndex);
+    const Standing standing = look_at(corners, near);
     if (standing.distance > reach_) return false;
     looks_away = looks_away || standing.facing < 0;
   }
-  const auto looked_away = [&](const Corners& corners) { return look_at(corners, kNoIndex).facing < 0; };
+  const auto looked_away = [&](const Corners& corners) { return look_at(corners, near).facing < 0; };
   return !looks_away || std::any_of(before.begin(), before.end(), looked_away);
-}
-
-OriginalGuard::Corners OriginalGuard::corners_of(const Mesh& level, Index face, const std::vector<Vec3f>& positions) {
-  return {Vec3(positions[level.corner_vertex(3 * face)]), Vec3(positions[level.corner_vertex(3 * face + 1)]),
-          Vec3(positions[level.corner_vertex(3 * face + 2)])};
 }
 
 /// Walks to the original's nearest point, and searches for it where none was known near there, or the one found is out
@@ -113,25 +139,35 @@ OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) con
   return {hit.face, hit.distance};
 }
 
+OriginalGuard::Standing::Standing(const Corners& c, Index face_near)
+    : corners{to_float(c[0]), to_float(c[1]), to_float(c[2])}, near(face_near) {}
+
 /// `near` is a face of the original near there, if known.
-OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near, Distances* inside) const {
-  const auto& [a, b, c] = corners;
-  Standing result{{to_float(a), to_float(b), to_float(c)}, 0, -1, near};
-  if (!steps_.next()) return result;
-  const auto visit = [&](const Vec3& point) {
-    const Nearest found = nearest(point, result.near);
-    result.distance = std::max(result.distance, found.distance);
-    result.near = found.face;
-    return found.distance;
-  };
-  for (const Vec3& corner : corners) visit(corner);
+OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index near) const {
+  Standing standing(corners, near);
+  for (const Vec3& corner : corners) visit(corner, standing);
+  look_inside(standing);
+  return standing;
+}
+
+double OriginalGuard::visit(const Vec3& point, Standing& standing) const {
+  const Nearest found = nearest(point, standing.near);
+  standing.distance = std::max(standing.distance, found.distance);
+  standing.near = found.face;
+  return found.distance;
+}
+
+/// Looks at points that are not corners; returns their distances.
+OriginalGuard::Distances OriginalGuard::look_inside(Standing& standing) const {
+  Distances distances{};
+  if (!steps_.next()) return distances;
+  const Vec3 a(standing.corners[0]), b(standing.corners[1]), c(standing.corners[2]);
   const Vec3 normal = normalized(cross(b - a, c - a));
   for (std::size_t k = 0; k < kPointsOfFace; ++k) {
-    const double distance = visit(point_on_triangle(a, b, c, k));
-    if (inside != nullptr) (*inside)[k] = distance;
-    result.facing = std::max(result.facing, dot(normal, normalized(area_vector(original_, result.near))));
+    distances[k] = visit(point_on_triangle(a, b, c, k), standing);
+    standing.facing = std::max(standing.facing, dot(normal, walk_.normal(standing.near)));
   }
-  return result;
+  return distances;
 }
 
 /// Whether a face that is now at `corners` need not be looked at: no point of it has moved farther than a corner has.
@@ -140,8 +176,9 @@ bool OriginalGuard::is_surely_fine(const Standing& last, const Corners& corners)
   for (std::size_t k = 0; k < 3; ++k) way = std::max(way, length(corners[k] - Vec3(last.corners[k])));
   if (last.distance + way > reach_ || last.facing < kFacesWell) return false;
   const Corners before{Vec3(last.corners[0]), Vec3(last.corners[1]), Vec3(last.corners[2])};
-  const auto normal = [](const Corners& c) { return normalized(cross(c[1] - c[0], c[2] - c[0])); };
-  return dot(normal(corners), normal(before)) > kTurnsLittle;
+  const Vec3 normal = area_vector(corners), was = area_vector(before);
+  const double product = dot(normal, was);
+  return product > 0 && product * product > kTurnsLittle * kTurnsLittle * squared_length(normal) * squared_length(was);
 }
 
 }  // namespace lodestone::detail

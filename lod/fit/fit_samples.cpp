@@ -46,13 +46,14 @@ SurfaceSamples::SurfaceSamples(const Mesh& original, std::span<const Index> face
   for (const Index f : face_order) {
     const std::array<Vec3, 3> p{original.corner_position(3 * f), original.corner_position(3 * f + 1),
                                 original.corner_position(3 * f + 2)};
-    all.push_back({(p[0] + p[1] + p[2]) * (1.0 / 3), middle_share * area[f]});
+    all.push_back({(p[0] + p[1] + p[2]) * (1.0 / 3), middle_share * area[f], original.corner_vertex(3 * f)});
     for (Index k = 0; k < 3; ++k) {
       const Index corner = 3 * f + k;
       if (use_edges && at_edge[corner] > 0)
-        all.push_back({(p[k] + p[(k + 1) % 3]) * 0.5, edge_share * at_edge[corner]});
-      double& left = at_vertex[original.corner_vertex(corner)];  // each vertex once, with the first of its faces
-      if (left > 0) all.push_back({p[k], left});
+        all.push_back({(p[k] + p[(k + 1) % 3]) * 0.5, edge_share * at_edge[corner], original.corner_vertex(corner)});
+      const Index vertex = original.corner_vertex(corner);
+      double& left = at_vertex[vertex];  // each vertex once, with the first of its faces
+      if (left > 0) all.push_back({p[k], left, vertex});
       left = 0;
     }
   }

@@ -15,7 +15,8 @@ namespace lodestone::detail {
 /// A point of the original surface, and where on the level it belongs at present.
 struct SurfaceSample {
   Vec3 position;
-  double weight = 0;  ///< the area it stands for
+  double weight = 0;        ///< the area it stands for
+  Index vertex = kNoIndex;  ///< of the original: a corner of the face that it is a point of
   Index face = kNoIndex;
   std::array<double, 3> weights{};
   double squared_distance = 0;

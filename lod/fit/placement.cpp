@@ -26,6 +26,7 @@
 #include "distance/triangle.h"
 #include "distance/triple_table.h"
 #include "fit/attribute_lookup.h"
+#include "fit/common_vertices.h"
 #include "fit/constrained_edges.h"
 #include "fit/edge_turns.h"
 #include "fit/face_guard.h"
@@ -50,6 +51,8 @@ constexpr double kRoam = 1.25;       // how far out of the original's box, of th
 // they are, sums of squares do not; what is nearer than a share of the rms distance counts by its square there, too.
 constexpr double kFineShare = 0.3;
 constexpr double kSoftening = 0.1;
+
+constexpr double kFarAtFirst = 1;  // of the mean distance: from there on a sample may be on the near side of a fold
 
 constexpr std::size_t kSamplesOfStep = 1024;  // looked up together, between two words about the progress
 constexpr double kFirstShare = 0.2;           // of the work: to find where each sample belongs
@@ -171,7 +174,7 @@ class Fitting {
         progress_(options.progress),
         steps_(progress_.part(0), 0, kSamplesOfStep),
         edges_(list_edges(level)),
-        guard_(*original.skin, *original.skin_index, *original.skin_walk, steps_),
+        guard_(*original.skin_index, *original.skin_walk, steps_),
         fixed_(find_fixed(original.mesh, level, options.fixed)),
         freedom_(freedom),
         samples_(original.mesh, original.face_order,
@@ -190,17 +193,24 @@ class Fitting {
   bool goes_on() const { return progress_.add(0); }
   void classify();
   void note_places();
+  void start();
+  void start_from_common_vertices();
   void search(double squared_distance);
+  void update_walk();
   void follow();
   void fence();
   void choose_norm();
   double error() const;
+  double mean_distance() const;
+  template <class Value>
+  double mean(const Value& value) const;
   void turn_edges();
   void assemble(SparseSystem& system);
   void add_faces(SparseSystem& system) const;
   void add_lines(SparseSystem& system);
   void move();
   double forward_error();
+  std::vector<Index> faces_of_samples() const;
   void keep_in_box(std::vector<Vec3>& positions) const;
 
   const Original& original_;
@@ -242,6 +252,24 @@ void Fitting::note_places() {
   for (const Vec3f& p : level_.positions) places_.emplace_back(p);
 }
 
+/// Says where on the level samples are near, and where on the original the level's faces are.
+void Fitting::start_from_common_vertices() {
+  const CommonVertices vertices(original_.mesh);
+  const std::vector<Index> near = vertices.faces_near(level_);
+  for (SurfaceSample& sample : samples_.all()) sample.face = near[sample.vertex];
+  const bool is_whole = original_.skin == &original_.mesh;
+  guard_.start_from(is_whole ? vertices.faces_at(level_) : CommonVertices(*original_.skin).faces_at(level_));
+}
+
+/// Finds where samples belong at first: from the vertices that level and original share each goes over the surface, and
+/// is searched for where that leads it farther away than most, since it may have ended on the near side of a fold.
+void Fitting::start() {
+  start_from_common_vertices();
+  follow();
+  const double far = kFarAtFirst * mean_distance();
+  search(far * far);
+}
+
 /// Finds the face nearest to each sample that is no nearer than that to where it belongs now, wherever that face is.
 void Fitting::search(double squared_distance) {
   if (!goes_on()) return;
@@ -268,15 +296,20 @@ void Fitting::search(double squared_distance) {
   }
 }
 
-/// Follows the samples over the surface to where it is nearest to them now.
-void Fitting::follow() {
-  if (!goes_on()) return;
+void Fitting::update_walk() {
   if (walk_)
     walk_->update(level_);
   else
     walk_.emplace(level_);
+}
+
+/// Follows the samples over the surface to where it is nearest to them now.
+void Fitting::follow() {
+  if (!goes_on()) return;
+  update_walk();
   for (SurfaceSample& sample : samples_.all()) {
     if (!steps_.next()) return;
+    if (sample.face == kNoIndex) continue;
     const SurfaceWalk::Place place = walk_->nearest_from(sample.position, sample.face);
     sample.place_at(place.face, place.on);
   }
@@ -320,12 +353,20 @@ double Fitting::error() const {
   return sum;
 }
 
-/// Of the samples' distances.
+double Fitting::mean_distance() const {
+  return mean([](const SurfaceSample& sample) { return std::sqrt(sample.squared_distance); });
+}
+
 double Fitting::mean_square() const {
+  return mean([](const SurfaceSample& sample) { return sample.squared_distance; });
+}
+
+template <class Value>
+double Fitting::mean(const Value& value) const {
   double area = 0, sum = 0;
   for (const SurfaceSample& sample : samples_.all()) {
     area += sample.weight;
-    sum += sample.weight * sample.squared_distance;
+    sum += sample.weight * value(sample);
   }
   return area > 0 ? sum / area : 0;
 }
@@ -424,49 +465,50 @@ void Fitting::move() {
   for (const Vec3& p : moved) positions.push_back(to_float(p));
   for (Index v = 0; v < positions.size(); ++v)
     if (fixed_[v] != 0) positions[v] = level_.positions[v];
+  TentativeMoves moves(level_, std::move(positions));
+  Index upright_at = TentativeMoves::kStart, near_at = TentativeMoves::kStart;
   do {
-    keep_faces_upright(level_, positions);
-  } while (!guard_.keep_faces_near(level_, positions));
-  level_.positions = std::move(positions);
+    keep_faces_upright(moves, upright_at);
+  } while (!guard_.keep_faces_near(moves, near_at));
+  level_.positions = moves.take_positions();
 }
 
 /// The sum again, over points inside the original's faces that the fit does not go by: these stand for their areas even
 /// where large faces meet small ones at an angle.
 double Fitting::forward_error() {
   const Mesh& original = original_.mesh;
-  const SurfaceIndex surface(level_);
+  update_walk();
+  const std::vector<Index> near = faces_of_samples();
   const std::size_t count = std::clamp(kCheckedPoints / original.face_count(), kFewestOfFace, kMostOfFace);
-  std::vector<Vec3> points;
-  std::vector<double> shares;
-  std::vector<SurfaceIndex::Hit> hits;
-  double sum = 0;
-  const auto add_up = [&] {
-    hits.assign(points.size(), {0, {}, kNoIndex, 0});
-    surface.nearest(points, hits);
-    for (std::size_t i = 0; i < hits.size() && steps_.next(); ++i)
-      sum += shares[i] * norm_.error(hits[i].distance * hits[i].distance);
-    points.clear();
-    shares.clear();
-  };
   const std::size_t step = std::max<std::size_t>(original.face_count() * count / kCheckedPoints, 1);
-  for (std::size_t i = 0; i < original_.face_order.size() && !progress_.is_cancelled(); i += step) {
+  double sum = 0;
+  Index face = 0;
+  for (std::size_t i = 0; i < original_.face_order.size() && steps_.next(); i += step) {
     const Index f = original_.face_order[i];
-    const double share =
-        0.5 * length(area_vector(original, f)) * static_cast<double>(step) / static_cast<double>(count);
+    const Index known = near[original.corner_vertex(3 * f)];
+    if (known != kNoIndex) face = known;
+    const auto [a, b, c] = corners_at(original, original.positions, f);
+    double sum_of_face = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      points.push_back(point_on_triangle(original.corner_position(3 * f), original.corner_position(3 * f + 1),
-                                         original.corner_position(3 * f + 2), k + 1));
-      shares.push_back(share);
+      const SurfaceWalk::Place place = walk_->nearest_from(point_on_triangle(a, b, c, k + 1), face);
+      sum_of_face += norm_.error(place.on.squared_distance);
+      face = place.face;
     }
-    if (points.size() >= kSamplesOfStep) add_up();
+    sum += 0.5 * length(area_vector(original, f)) * sum_of_face;
   }
-  add_up();
-  return sum;
+  return sum * static_cast<double>(step) / static_cast<double>(count);
+}
+
+/// Where the samples at each vertex of the original, or one of them, belong.
+std::vector<Index> Fitting::faces_of_samples() const {
+  std::vector<Index> faces(original_.mesh.vertex_count(), kNoIndex);
+  for (const SurfaceSample& sample : samples_.all()) faces[sample.vertex] = sample.face;
+  return faces;
 }
 
 /// Where the work is cancelled the level is left anywhere.
 void Fitting::run() {
-  search(0);
+  start();
   if (progress_.is_cancelled()) return;
   choose_norm();
   fence();
@@ -497,6 +539,7 @@ void Fitting::run() {
   }
   if (progress_.is_cancelled()) return;
   level_ = std::move(best_level);
+  walk_.reset();
   // Where most faces have no error yet there is little to gain, and the samples may mislead.
   if (is_fine_ && forward_error() + guard_.survey(level_, norm_).error > error_of_unfitted) level_ = unfitted;
 }

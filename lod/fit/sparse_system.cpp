@@ -11,7 +11,7 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr double kEnough = 1e-12;  // of the squared residual at the start
+constexpr double kEnough = 1e-6;  // of the squared residual at the start
 
 double sum_of_products(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double sum = 0;
