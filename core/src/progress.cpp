@@ -5,16 +5,13 @@
 #include <mutex>
 
 namespace lodestone {
-namespace {
 
 /// Whom all parts of a piece of work report to.
-struct Audience {
+struct Progress::Audience {
   std::function<bool(double)> listener;
   std::mutex mutex;
   std::atomic<bool> is_cancelled = false;
 };
-
-}  // namespace
 
 /// A part knows the one that it belongs to, up to the whole: what is done of it is done of these, too.
 struct Progress::Part {

@@ -37,6 +37,7 @@ class Progress {
   struct Calls {
     std::function<bool(double)> listener;
   };
+  struct Audience;
   struct Part;
   explicit Progress(Calls calls);
   explicit Progress(std::shared_ptr<Part> part) : part_(std::move(part)) {}
