@@ -209,20 +209,10 @@ PatchBound::Standing PatchBound::judge(const Frame& frame, const Points& points)
 
 /// Starts the patch with a face, or where that is not over the triangle with one of those around it.
 void PatchBound::start_patch(const Frame& frame, Index start) {
-  if (add_if_over(frame, start) == Standing::InPatch) return;
-  for (Index corner = 3 * start; corner < 3 * start + 3; ++corner) {
-    if (start_in_star(frame, corner)) return;
-  }
-}
-
-/// Tries the faces around a corner's vertex, as far as the next border one way round.
-bool PatchBound::start_in_star(const Frame& frame, Index corner) {
-  for (Index c = opposite_[corner]; c != kNoIndex; c = opposite_[c]) {
-    c = next_corner(c);
-    if (c == corner) return false;
-    if (add_if_over(frame, face_of_corner(c)) == Standing::InPatch) return true;
-  }
-  return false;
+  const auto starts = [&](Index face) { return add_if_over(frame, face) == Standing::InPatch; };
+  if (starts(start)) return;
+  for (Index corner = 3 * start; corner < 3 * start + 3; ++corner)
+    if (any_face_around(opposite_, corner, starts)) return;
 }
 
 /// Grows the patch across the face's edges; where an edge is part of the outline, checks it and adds up the winding.

@@ -13,6 +13,18 @@ namespace lodestone::detail {
 /// the face across it; kNoIndex at a border and where not exactly two half-edges meet.
 std::vector<Index> opposite_corners(const Mesh& mesh);
 
+/// Calls `visit(face)` for the other faces around a corner's vertex, as far as the next border one way round, until one
+/// is true; returns whether one was.
+template <class Visit>
+bool any_face_around(std::span<const Index> opposite, Index corner, const Visit& visit) {
+  for (Index c = opposite[corner]; c != kNoIndex; c = opposite[c]) {
+    c = next_corner(c);
+    if (c == corner) return false;
+    if (visit(face_of_corner(c))) return true;
+  }
+  return false;
+}
+
 /// Bounds the distance from a triangle to a surface by showing that the surface spans it.
 ///
 /// Take faces that lie over or under the triangle, seen along its normal, and hang together. If the outline of that
@@ -67,6 +79,7 @@ class PatchBound {
 
   /// What a face is to the triangle: not over or under it, part of the patch, or too high over it for that.
   enum class Standing : std::uint32_t { Apart, InPatch, TooHigh };
+  static constexpr std::uint32_t kStandings = 3;
 
   Points project(const Frame& frame, Index face) const;
   Standing add_if_over(const Frame& frame, Index face);
@@ -76,14 +89,11 @@ class PatchBound {
   bool was_tested(Index face) const { return state_[face] / kStandings == run_; }
   Standing standing(Index face) const { return static_cast<Standing>(state_[face] % kStandings); }
   void start_patch(const Frame& frame, Index start);
-  bool start_in_star(const Frame& frame, Index corner);
   bool visit_outline(const Frame& frame, Index face, const Points& points, int& winding);
 
   const Mesh& surface_;
   std::span<const Index> opposite_;
   std::vector<Index> patch_;
-  static constexpr std::uint32_t kStandings = 3;
-
   std::vector<Points> points_;        // Of the patch's faces.
   std::vector<std::uint32_t> state_;  // Per face: kStandings·run_ + its standing if tested in this run.
   std::uint32_t run_ = 0;

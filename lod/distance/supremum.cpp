@@ -156,17 +156,14 @@ void SupremumSearch::visit_face(Index face, Goal& goal) {
     bounds_.lower(face, std::min(bound_by_length(corners), bound_by_same_face(corners)), nearest);
     if (!all_near_faces(corners)) continue;
     // Two faces often do, three seldom: then the patch, which is dearer, is tried first.
-    bool corners_tried = false;
-    if (is_open(face, goal) && !patch_tried && two_share_face(corners)) {
-      bounds_.lower(face, bound_by_corners(corners, goal), nearest);
-      corners_tried = true;
-    }
+    const bool corners_first = !patch_tried && two_share_face(corners);
+    if (corners_first && is_open(face, goal)) bounds_.lower(face, bound_by_corners(corners, goal), nearest);
     if (is_open(face, goal) && !patch_tried) {
       patch_tried = true;
       const double bound = bound_by_patch(corners, goal);
       bounds_.lower(face, bound, to_patch_.patch());
     }
-    if (is_open(face, goal) && !corners_tried) bounds_.lower(face, bound_by_corners(corners, goal), nearest);
+    if (!corners_first && is_open(face, goal)) bounds_.lower(face, bound_by_corners(corners, goal), nearest);
   } while (is_open(face, goal) && query_one_vertex(face, goal));
 }
 

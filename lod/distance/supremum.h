@@ -84,9 +84,6 @@ class SupremumSearch {
 
   /// Queries about so many vertices, spread over the mesh's faces, so that the goal is near what it will be.
   void scout(std::size_t count, Goal& goal);
-  /// Lowers the bounds of faces that lie together at once, where all of them are as good as flat: `index` is the
-  /// mesh's.
-  void visit_runs(const SurfaceIndex& index, Goal& goal);
   /// Lowers the faces' bounds as far as the goal asks and queries at vertices can.
   void visit_vertices(Goal& goal);
   /// Splits faces until all bounds meet the goal or `budget` parts were halved.

@@ -5,16 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "distance/patch_bound.h"
 #include "distance/triangle.h"
 
 namespace lodestone::detail {
 namespace {
 
 constexpr std::size_t kMostScans = 30;  // An index takes about the time of so many.
-
-double squared_distance(const Mesh& mesh, const Vec3& p, Index face) {
-  return squared_length(p - nearest_on_triangle(p, triangle_of(mesh, face)));
-}
 
 double squared_distance_to_box(const Vec3& p, const Triangle& triangle) {
   const auto beyond = [](double x, float a, float b, float c) {
@@ -29,7 +26,7 @@ double squared_distance_to_box(const Vec3& p, const Triangle& triangle) {
 }  // namespace
 
 double TargetSurface::distance_to_face(const Vec3& p, Index face) const {
-  return std::sqrt(squared_distance(mesh_, p, face));
+  return std::sqrt(look_at(p, face).squared_distance);
 }
 
 TargetSurface::Near TargetSurface::near(const Vec3& p, Index start) const {
@@ -44,16 +41,21 @@ TargetSurface::Place TargetSurface::look_at(const Vec3& p, Index face) const {
   return {face, nearest.corners, squared_length(p - nearest.point)};
 }
 
+/// Steps to a face if that is nearer.
+bool TargetSurface::step_to(const Vec3& p, Index face, Place& place) const {
+  const Place other = look_at(p, face);
+  if (other.squared_distance >= place.squared_distance) return false;
+  place = other;
+  return true;
+}
+
 /// Steps to the first of the faces beyond the edges that is nearer. The nearest point may lie on an edge: then the one
 /// beyond that is looked at alone.
 bool TargetSurface::step_across(const Vec3& p, Place& place) const {
   for (Index k = 0; k < 3; ++k) {
     const unsigned edge = 1U << k | 1U << next_corner(k);
-    if ((place.corners & ~edge) != 0 || opposite_[3 * place.face + k] == kNoIndex) continue;
-    const Place other = look_at(p, face_of_corner(opposite_[3 * place.face + k]));
-    if (other.squared_distance >= place.squared_distance) continue;
-    place = other;
-    return true;
+    const Index other = opposite_[3 * place.face + k];
+    if ((place.corners & ~edge) == 0 && other != kNoIndex && step_to(p, face_of_corner(other), place)) return true;
   }
   return false;
 }
@@ -62,15 +64,7 @@ bool TargetSurface::step_across(const Vec3& p, Place& place) const {
 bool TargetSurface::step_around(const Vec3& p, Place& place) const {
   if (std::popcount(place.corners) != 1) return false;
   const Index corner = 3 * place.face + static_cast<Index>(std::countr_zero(place.corners));
-  for (Index c = opposite_[corner]; c != kNoIndex; c = opposite_[c]) {
-    c = next_corner(c);
-    if (c == corner) return false;
-    const Place other = look_at(p, face_of_corner(c));
-    if (other.squared_distance >= place.squared_distance) continue;
-    place = other;
-    return true;
-  }
-  return false;
+  return any_face_around(opposite_, corner, [&](Index face) { return step_to(p, face, place); });
 }
 
 TargetSurface::Near TargetSurface::nearest(const Vec3& p, Index hint) {
@@ -85,14 +79,10 @@ TargetSurface::Near TargetSurface::nearest(const Vec3& p, Index hint) {
 
 /// Looks at all faces whose boxes are nearer than the best so far, which is `hint` at first.
 TargetSurface::Near TargetSurface::scan(const Vec3& p, Index hint) const {
-  Index nearest = hint;
-  double least = hint != kNoIndex ? squared_distance(mesh_, p, hint) : std::numeric_limits<double>::infinity();
-  for (Index face = 0; face < mesh_.face_count(); ++face) {
-    if (squared_distance_to_box(p, triangle_of(mesh_, face)) >= least) continue;
-    const double squared = squared_distance(mesh_, p, face);
-    if (squared < least) least = squared, nearest = face;
-  }
-  return {nearest, std::sqrt(least)};
+  Place place = hint != kNoIndex ? look_at(p, hint) : Place{kNoIndex, 0, std::numeric_limits<double>::infinity()};
+  for (Index face = 0; face < mesh_.face_count(); ++face)
+    if (squared_distance_to_box(p, triangle_of(mesh_, face)) < place.squared_distance) step_to(p, face, place);
+  return {place.face, std::sqrt(place.squared_distance)};
 }
 
 }  // namespace lodestone::detail

@@ -40,6 +40,7 @@ class TargetSurface {
   };
 
   Place look_at(const Vec3& p, Index face) const;
+  bool step_to(const Vec3& p, Index face, Place& place) const;
   bool step_across(const Vec3& p, Place& place) const;
   bool step_around(const Vec3& p, Place& place) const;
   Near scan(const Vec3& p, Index hint) const;
