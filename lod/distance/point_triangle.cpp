@@ -36,7 +36,7 @@ void squared_distances(const PointBatch& points, const std::array<Vec3, 3>& tria
   const float* px = points.x();
   const float* py = points.y();
   const float* pz = points.z();
-  const std::size_t count = points.padded_size() / PointBatch::kLanes * PointBatch::kLanes;
+  const std::size_t count = points.padded_size();
   for (std::size_t i = 0; i < count; ++i) {
     const float x = px[i], y = py[i], z = pz[i];
     const float height = n.dot(x - e0.start.x, y - e0.start.y, z - e0.start.z);

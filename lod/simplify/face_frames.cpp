@@ -66,7 +66,7 @@ void FaceFrames::set(std::span<const Vec3> corners, std::span<const PolygonTrian
   const auto write = [](Vectors& to, std::size_t i, const Vec3& v) {
     to.x[i] = static_cast<float>(v.x), to.y[i] = static_cast<float>(v.y), to.z[i] = static_cast<float>(v.z);
   };
-  for (std::size_t i = 0; i < padded / kLanes * kLanes; ++i) {
+  for (std::size_t i = 0; i < padded; ++i) {
     const Vec3 s = b[i] - a[i], t = c[i] - a[i];
     const Vec3 n = cross(s, t), across = cross(n, t - s);
     write(start_, i, a[i]), write(normal_, i, n);
@@ -84,7 +84,7 @@ void FaceFrames::squared_distances(const PointBatch& points, float* __restrict o
   const float* px = points.x();
   const float* py = points.y();
   const float* pz = points.z();
-  const std::size_t count = points.padded_size() / PointBatch::kLanes * PointBatch::kLanes;
+  const std::size_t count = points.padded_size();
   for (std::size_t triangle = 0; triangle < count_; ++triangle, out += count) {
     const Frame face = frame(triangle);
     for (std::size_t i = 0; i < count; ++i) out[i] = face.squared_distance(px[i], py[i], pz[i]);
@@ -96,7 +96,7 @@ void FaceFrames::least_squared_distances(const PointBatch& points, float* __rest
   const float* px = points.x();
   const float* py = points.y();
   const float* pz = points.z();
-  const std::size_t count = points.padded_size() / PointBatch::kLanes * PointBatch::kLanes;
+  const std::size_t count = points.padded_size();
   for (std::size_t i = 0; i < count; ++i) out[i] = std::numeric_limits<float>::infinity();
   for (std::size_t triangle = 0; triangle < count_; ++triangle) {
     const Frame face = frame(triangle);
@@ -111,7 +111,7 @@ void squared_distances(const PointBatch& points, const Vec3& from, const Vec3& t
   const float* px = points.x();
   const float* py = points.y();
   const float* pz = points.z();
-  const std::size_t count = points.padded_size() / PointBatch::kLanes * PointBatch::kLanes;
+  const std::size_t count = points.padded_size();
   for (std::size_t i = 0; i < count; ++i)
     out[i] = segment.squared_distance(px[i] - start.x, py[i] - start.y, pz[i] - start.z);
 }
