@@ -32,14 +32,21 @@ std::vector<Vec3> points_near(const Mesh& mesh, std::uint64_t seed) {
   return points;
 }
 
-}  // namespace
-
-TEST_CASE("the nearest face is as near as that of all, with an index or without, and whatever the hint") {
+/// Calls `visit(mesh, opposite corners)` for each family of shapes that has faces.
+template <class Visit>
+void for_each_surface(const Visit& visit) {
   for (const NamedShape& shape : all_shapes()) {
     const Mesh mesh = mesh_of(shape.soup);
     if (mesh.face_count() == 0) continue;
     INFO(shape.name);
-    const std::vector<Index> opposite = detail::opposite_corners(mesh);
+    visit(mesh, detail::opposite_corners(mesh));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the nearest face is as near as that of all, with an index or without, and whatever the hint") {
+  for_each_surface([](const Mesh& mesh, const std::vector<Index>& opposite) {
     const SurfaceIndex index(mesh);
     TargetSurface by_itself(mesh, opposite), by_index(mesh, opposite, index);
     Random random(3);
@@ -52,15 +59,11 @@ TEST_CASE("the nearest face is as near as that of all, with an index or without,
         CHECK(surface->distance_to_face(p, found.face) == found.distance);
       }
     }
-  }
+  });
 }
 
 TEST_CASE("going from face to face never ends farther than it began, and says how far that is") {
-  for (const NamedShape& shape : all_shapes()) {
-    const Mesh mesh = mesh_of(shape.soup);
-    if (mesh.face_count() == 0) continue;
-    INFO(shape.name);
-    const std::vector<Index> opposite = detail::opposite_corners(mesh);
+  for_each_surface([](const Mesh& mesh, const std::vector<Index>& opposite) {
     const TargetSurface surface(mesh, opposite);
     Random random(4);
     for (const Vec3& p : points_near(mesh, 2)) {
@@ -69,7 +72,7 @@ TEST_CASE("going from face to face never ends farther than it began, and says ho
       CHECK(found.distance == surface.distance_to_face(p, found.face));
       CHECK(found.distance <= surface.distance_to_face(p, start));
     }
-  }
+  });
 }
 
 TEST_CASE("on a convex shape going from face to face finds the nearest from anywhere for points outside") {
