@@ -189,11 +189,11 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->check(CLI::IsMember({"optimised", "subset"}))
       ->type_name("NAME")
       ->group(group);
-  app.add_option("--profile", profile,
-                 "One file, levels by MSFT_lod (default); a file for each level and an index; or one file of a coarse "
-                 "level (3 % "
-                 "of the faces, or one target) and a stream that refines it to the whole, together about as large as "
-                 "the whole mesh by Draco")
+  app.add_option(
+         "--profile", profile,
+         "One file, levels by MSFT_lod (default); a file for each level and an index; or one file of a coarse "
+         "level (3 % of the faces, fewer for a first picture within 4 kB or a hundredth of the file; or one "
+         "target) and a stream that refines it to the whole, together about as large as the whole mesh by Draco")
       ->check(CLI::IsMember({"msft-lod", "files", "stream"}))
       ->type_name("NAME")
       ->group(group);

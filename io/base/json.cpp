@@ -1,9 +1,13 @@
 #include "base/json.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
+
+#include "base/number_text.h"
 
 namespace lodestone::detail {
 namespace {
@@ -35,6 +39,12 @@ tl::unexpected<Error> wrong(std::string_view where, const char* key, const Json&
 }
 
 }  // namespace
+
+double of_few_digits(float value) {
+  std::array<char, 32> digits;
+  const char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return parse_double({digits.data(), static_cast<std::size_t>(end - digits.data())}).value_or(value);
+}
 
 std::optional<std::size_t> as_size(const Json& value) {
   // Writers of glTF are known to say 3.0 for 3.

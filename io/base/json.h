@@ -37,6 +37,10 @@ std::string string_member(const Json& object, const char* key);
 /// Returns the member as a number, or `fallback` where there is none or it is something else.
 double number_member(const Json& object, const char* key, double fallback);
 
+/// Returns the double of the fewest digits that is nearest to a float: written as text, it has nine at most where the
+/// float itself, a double then, has seventeen. Pre: finite.
+double of_few_digits(float value);
+
 /// Reads an array of whole numbers ≥ 0; empty where the member is missing.
 Result<std::vector<std::size_t>> size_array_member(const Json& object, const char* key, std::string_view where);
 /// Reads an array of exactly `count` numbers; empty where the member is missing.

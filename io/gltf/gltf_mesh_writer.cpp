@@ -129,8 +129,8 @@ Json position_accessor(const AccessorData& data) {
 
 void set_bounds(Json& accessor, std::span<const std::byte> positions) {
   const auto [low, high] = bounds_of(positions);
-  accessor["min"] = {low.x, low.y, low.z};
-  accessor["max"] = {high.x, high.y, high.z};
+  accessor["min"] = {of_few_digits(low.x), of_few_digits(low.y), of_few_digits(low.z)};
+  accessor["max"] = {of_few_digits(high.x), of_few_digits(high.y), of_few_digits(high.z)};
 }
 
 }  // namespace lodestone::detail

@@ -11,6 +11,12 @@ void set_finite(Json& object, const char* key, double value) {
   if (std::isfinite(value)) object[key] = value;
 }
 
+/// The same in few digits: these come before all that is drawn. What is beyond floats keeps its digits.
+void set_short(Json& object, const char* key, double value) {
+  const auto rounded = static_cast<float>(value);
+  set_finite(object, key, std::isnormal(rounded) ? of_few_digits(rounded) : value);
+}
+
 }  // namespace
 
 bool same_mesh(const Mesh& a, const Mesh& b) {
@@ -22,12 +28,12 @@ bool same_mesh(const Mesh& a, const Mesh& b) {
 
 void add_shown_numbers(const AssetLevel& level, const SceneMesh& mesh, Json& extension) {
   const Deviation& d = level.deviation;
-  set_finite(extension, "deviation", d.maximum());
-  set_finite(extension, "mean_deviation", std::max(d.forward.mean, d.backward.mean));
-  set_finite(extension, "rms_deviation", std::max(d.forward.rms, d.backward.rms));
-  set_finite(extension, "curvature_error", level.curvature_error);
-  set_finite(extension, "world_scale", mesh.scale);
-  set_finite(extension, "world_area", mesh.area);
+  set_short(extension, "deviation", d.maximum());
+  set_short(extension, "mean_deviation", std::max(d.forward.mean, d.backward.mean));
+  set_short(extension, "rms_deviation", std::max(d.forward.rms, d.backward.rms));
+  set_short(extension, "curvature_error", level.curvature_error);
+  set_short(extension, "world_scale", mesh.scale);
+  set_short(extension, "world_area", mesh.area);
 }
 
 Json level_numbers(const AssetLevel& level, const WrittenLevel& written, const SceneMesh& mesh, std::size_t node_count,

@@ -147,15 +147,21 @@ class SceneWriter {
 
   Result<EncodedAsset> finish() {
     EncodedAsset asset{{}, std::move(beside_), std::move(layout_)};
+    const std::uint64_t binary_bytes = (builder_.binary_bytes() + 3) / 4 * 4;
+    std::uint64_t document_bytes = 0;
     if (options_.gltf_name.empty()) {
       LODESTONE_TRY(asset.glb, builder_.finish());
+      document_bytes = asset.glb.size() - std::min<std::uint64_t>(binary_bytes, asset.glb.size());
     } else {
       const std::string data = options_.gltf_name + ".bin";
       GlbBuilder::SeparateFiles files = builder_.finish_separate(uri_of(data));
       const auto json = std::as_bytes(std::span(files.json));
       asset.glb.assign(json.begin(), json.end());
       if (!files.binary.empty()) asset.beside.insert(asset.beside.begin(), {data, std::move(files.binary)});
+      document_bytes = asset.glb.size();
     }
+    const AssetLayout::Level& coarsest = asset.layout.levels.back();
+    asset.layout.first_picture_bytes = document_bytes + coarsest.byte_offset + coarsest.byte_length;
     asset.layout.total_bytes = asset.glb.size();
     for (const AssetFile& file : asset.beside) asset.layout.total_bytes += file.bytes.size();
     return asset;

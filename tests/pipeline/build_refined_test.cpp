@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <lodestone/core/parallel.h>
+#include <lodestone/io/compact_stream.h>
 #include <lodestone/io/file.h>
 #include <lodestone/io/stream_reader.h>
 #include <lodestone/lod/cursor.h>
@@ -311,6 +312,58 @@ TEST_CASE("what a refined file shows has something of each primitive, so that it
     CHECK(std::set<Index>(last.face_material.begin(), last.face_material.end()) == std::set<Index>{0, 1});
     CHECK(level_surface(shown, std::vector{LeveledMesh{{AssetLevel{last, {}, 0, "whole"}}, {}}}, 0).has_value());
   }
+}
+
+TEST_CASE("a refined file's first picture comes within its limit, unless the level was asked for") {
+  const Scene scene = scene_of(terrain(40, 3));
+  BuildOptions options = refined(0.9);
+  const BuildResult result = built(scene, options);
+  const AssetLayout& layout = result.files[0].layout;
+  CHECK(layout.first_picture_bytes <= 4096);
+  CHECK(layout.first_picture_bytes > 3000);
+  const GltfFile file = GltfFile::from_glb(result.files[0].glb);
+  const GltfJson& draco = file.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"];
+  const GltfJson& view = file.json["bufferViews"][draco["bufferView"].get<std::size_t>()];
+  const std::size_t binary = file.json["buffers"][0]["byteLength"], begin = view.value("byteOffset", std::size_t{0});
+  const std::size_t end = begin + view["byteLength"].get<std::size_t>();
+  CHECK(layout.first_picture_bytes == result.files[0].glb.size() - (binary + 3) / 4 * 4 + end);
+  const Asset asset = Asset::read_bytes(result.files[0].glb).value();
+  CHECK(asset.levels().value()[0].face_count == result.levels[1].face_count);
+  CHECK(result.meshes[0].levels.size() == 2);
+  CHECK(result.levels[1].face_count < scene.meshes()[0].mesh.face_count() / 2);
+  CHECK(asset.levels().value()[0].maximum_deviation == Approx(result.levels[1].deviation.maximum()));
+
+  options.targets[0].is_wish = false;
+  const BuildResult asked = built(scene, options);
+  CHECK(asked.files[0].layout.first_picture_bytes > 4096);
+  CHECK(asked.levels[1].face_count > scene.meshes()[0].mesh.face_count() / 2);
+}
+
+TEST_CASE("a stream alone has a first picture early, though all of it vanishes at once") {
+  TriangleSoup soup;
+  const TriangleSoup piece = icosphere(0, 0.05, 3);
+  for (int i = 0; i < 300; ++i) {
+    const auto first = static_cast<Index>(soup.positions.size());
+    for (const Vec3f& p : piece.positions)
+      soup.positions.push_back({p.x + 3 * static_cast<float>(i % 10), p.y + 3 * static_cast<float>(i / 10), p.z});
+    for (const Index index : piece.indices) soup.indices.push_back(first + index);
+  }
+  const Scene scene = scene_of(soup);
+  BuildOptions options = stream_alone();
+  options.placement = Placement::Subset;  // placed levels end chunks, too
+  const BuildResult result = built(scene, options);
+  const auto ends_of_first_chunk = [](const std::vector<std::byte>& stream) {
+    const CompactChunk first = read_compact_chunks(stream).value()[0];
+    return first.byte_offset + first.byte_length;
+  };
+  CHECK(ends_of_first_chunk(encode_compact(result.simplified[0].mesh, {}).value().bytes) > 4096);
+  const std::vector<std::byte>& stream = result.files[0].glb;
+  CHECK(ends_of_first_chunk(stream) <= 4096);
+  CHECK(ends_of_first_chunk(stream) > 1000);
+  const Mesh& whole = scene.meshes()[0].mesh;
+  const Mesh last = refined_to_the_end(stream);
+  CHECK(last.face_count() == whole.face_count());
+  CHECK(largest_deviation(last, whole) <= bounding_box(whole).diagonal() / ((1 << 14) - 1));
 }
 
 TEST_CASE("a refined .gltf has its streams beside it, which readers find") {

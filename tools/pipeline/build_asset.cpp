@@ -15,6 +15,7 @@
 #include <lodestone/lod/cursor.h>
 
 #include "pipeline/build_progress.h"
+#include "pipeline/first_picture.h"
 #include "pipeline/level_measure.h"
 #include "pipeline/level_plan.h"
 #include "pipeline/make_levels.h"
@@ -98,6 +99,14 @@ void report_plan(const Scene& scene, LevelPlan& plan, const std::vector<LeveledM
   result.grid_error = plan.grid_error;
 }
 
+/// Says of a plan's last level what it is now.
+void report_last_level_again(const Scene& scene, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
+                             BuildResult& result) {
+  result.levels.pop_back();
+  for (BuildResult::MeshPart& mesh : result.meshes) mesh.levels.pop_back();
+  report_level(scene, plan, plan.level_count() - 1, levels, result);
+}
+
 // How the work of writing is shared out: the streams, and of each file the encoding.
 constexpr double kStreamsShare = 0.3;
 constexpr double kEncodingShare = 0.9;
@@ -120,15 +129,18 @@ struct Placer {
 };
 constexpr double kPlacingShare = 0.7;  // of the work on a compact stream; the rest is encoding
 
-/// `placer`: null where the vertices of levels stay where they are.
+/// `placer`: null where the vertices of levels stay where they are. `is_alone`: it is all that shows a picture.
 Result<std::vector<std::byte>> encode(std::size_t i, const ProgressiveMesh& mesh, CompactOptions options,
-                                      const Placer* placer, const Progress& progress) {
+                                      const Placer* placer, bool is_alone, const Progress& progress) {
   std::vector<PlacedLevel> placed;
   const double placing = placer != nullptr && !options.lossless ? kPlacingShare : 0;
   if (placing > 0) placed = placer->fitter.placed(i, placer->measured.original(i), progress.part(placing));
   if (!progress.reach(placing)) return cancelled();
   options.progress = progress.part(1 - placing);
-  LODESTONE_TRY(CompactStream stream, encode_compact(mesh, options, placed));
+  const MeasuredSurface* const original = placing > 0 ? &placer->measured.original(i) : nullptr;
+  LODESTONE_TRY(CompactStream stream, is_alone && !options.lossless
+                                          ? encode_early_picture(mesh, options, std::move(placed), original)
+                                          : encode_compact(mesh, options, placed));
   return std::move(stream.bytes);
 }
 
@@ -149,7 +161,7 @@ Result<void> encode_streams(const Scene& scene, const BuildOptions& build, const
     const Progress part = progress.part(1 / static_cast<double>(levels.size()));
     if (part.is_cancelled()) return;
     const ProgressiveMesh& mesh = result.simplified[i].mesh;
-    streams[i] = encode(i, mesh, options[i], placer, part);
+    streams[i] = encode(i, mesh, options[i], placer, build.layout == FileLayout::StreamAlone, part);
     const bool is_held = streams[i] || streams[i].error().code == ErrorCode::Cancelled;
     if (!is_held && !is_by_compact_streams(build.layout)) streams[i] = encode(mesh, part);
   });
@@ -366,6 +378,11 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
     const Placer placer = {measured, fitter};
     LODESTONE_CHECK(
         encode_streams(scene, options, places ? &placer : nullptr, levels, result, notes, writing.part(kStreamsShare)));
+  }
+  if (options.layout == FileLayout::Refined && options.targets.size() == 1 && options.targets[0].is_wish) {
+    LODESTONE_TRY(const bool is_coarser,
+                  fit_first_picture(measured, result.simplified, options, fitter, writing.part(0), plan, levels));
+    if (is_coarser) report_last_level_again(scene, plan, levels, result);
   }
   writing.reach(kStreamsShare);
   result.timings_ms.write = stopwatch.lap_ms();

@@ -83,7 +83,10 @@ struct AssetLayout {
   double quantisation_error = 0;  ///< the farthest that rounding to the grid moves a vertex, world units
   int position_bits = 0;          ///< of the finest grid; 0 where positions are exact
   std::uint64_t stream_bytes = 0;
-  std::uint64_t total_bytes = 0;   ///< of all files together
+  std::uint64_t total_bytes = 0;  ///< of all files together
+  /// What has to be there before the coarsest level can be drawn, but for images: the document, and the binary data up
+  /// to the level's end.
+  std::uint64_t first_picture_bytes = 0;
   std::vector<std::string> notes;  ///< what is stored otherwise than asked for, one sentence each
 };
 
