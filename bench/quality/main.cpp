@@ -21,7 +21,7 @@
 #include "models.h"
 #include "peers/referee.h"
 #include "peers/simplifier.h"
-#include "picture.h"
+#include "picture/picture.h"
 #include "report.h"
 
 namespace lodestone::bench {
@@ -153,21 +153,21 @@ int compare(const Options& options, const Models& models, const std::vector<doub
 // A time that something else on the machine disturbs is longer, never shorter.
 constexpr int kTimedRuns = 3;
 
-TimedError timed_error(const Simplifier& tool, const Mesh& mesh, std::size_t faces, const Referee& referee) {
-  TimedError result;
+CostedError timed_error(const Simplifier& tool, const Mesh& mesh, std::size_t faces, const Referee& referee) {
+  CostedError result;
   for (int run = 0; run < kTimedRuns; ++run) {
     const std::vector<Level> levels = tool.run(mesh, std::span(&faces, 1));
     if (run == 0) result.error = referee.judge(levels.front().surface).mean;
     const double seconds = levels.front().seconds.cpu;
-    result.seconds = run == 0 ? seconds : std::min(result.seconds, seconds);
+    result.cost = run == 0 ? seconds : std::min(result.cost, seconds);
   }
   return result;
 }
 
 /// Takes a model to its smallest published count: lodestone at each effort, the others once.
-TimedPanel picture_panel(const Model& model, const Options& options) {
+ErrorPanel picture_panel(const Model& model, const Options& options) {
   const std::size_t faces = model.paper_counts.back();
-  TimedPanel panel{model.name + ", " + std::to_string(faces) + " faces", {}};
+  ErrorPanel panel{model.name + ", " + std::to_string(faces) + " faces", {}, {}};
   const Referee referee(surface_of(model.mesh), options.samples);
   for (int effort = kLeastEffort; effort <= kMostEffort; ++effort) {
     Options at = options;
@@ -186,20 +186,20 @@ TimedPanel picture_panel(const Model& model, const Options& options) {
 }
 
 int draw_picture(const Options& options, const Models& models) {
-  std::vector<TimedPanel> panels;
+  std::vector<ErrorPanel> panels;
   for (const Model& model : models.found)
     if (!model.paper_counts.empty()) panels.push_back(picture_panel(model, options));
   if (panels.empty()) {
     std::fprintf(stderr, "%s: not drawn: none of these models has published counts\n", options.picture.c_str());
     return 1;
   }
-  for (const TimedPanel& panel : panels)
-    for (const TimedSeries& series : panel.series)
-      for (const TimedError& point : series.points)
+  for (const ErrorPanel& panel : panels)
+    for (const ErrorSeries& series : panel.series)
+      for (const CostedError& point : series.points)
         std::printf("%s | %s %s | %.3f s | %.4f %%\n", panel.title.c_str(), series.name.c_str(), point.label.c_str(),
-                    point.seconds, point.error);
+                    point.cost, point.error);
   std::ofstream file(options.picture);
-  file << error_time_picture(panels);
+  file << error_picture(panels, "s", panels.size());
   if (file.flush()) return 0;
   std::fprintf(stderr, "%s: not writable\n", options.picture.c_str());
   return 4;

@@ -25,6 +25,7 @@
 
 #include "gltf/draco_encode.h"
 #include "meshopt_bits.h"
+#include "rates.h"
 
 namespace lodestone::bench {
 namespace {
@@ -39,7 +40,12 @@ struct Options {
   std::vector<double> rounds = {0, 1.5, 2};
   bool curve = false;
   bool placed = false;
+  std::string picture;
 };
+
+// What --picture draws where no files are named.
+const std::vector<std::string> kDrawn = {"paper/stanford-bunny.obj", "mesh/rocker-arm.obj",
+                                         "mesh/spot/spot_triangulated.obj", "gltf/FlightHelmet/FlightHelmet.gltf"};
 
 [[noreturn]] void die(const std::string& what, const Error& error) {
   std::fprintf(stderr, "stream: %s: %s\n", what.c_str(), error.message.c_str());
@@ -292,11 +298,19 @@ int run(int argc, char** argv) {
   app.add_option("--rounds", options.rounds, "SimplifyOptions::dense_rounds")->delimiter(',')->allow_extra_args(false);
   app.add_flag("--placed", options.placed, "with levels that are placed closer to the full mesh");
   app.add_flag("--curve", options.curve, "what each chunk leads to");
+  app.add_option(
+      "--picture", options.picture,
+      "SVG file to draw: error against bytes beside levels by Draco, of the files or of four models; no table of bits");
   CLI11_PARSE(app, argc, argv);
 
   const auto path_of = [&](const std::string& file) {
     return std::filesystem::exists(file) ? std::filesystem::path(file) : std::filesystem::path(options.data) / file;
   };
+  if (!options.picture.empty()) {
+    std::vector<std::filesystem::path> models;
+    for (const std::string& file : app.count("files") > 0 ? options.files : kDrawn) models.push_back(path_of(file));
+    return draw_rates(models, options.picture);
+  }
   std::vector<std::pair<std::string, Mesh>> meshes;
   for (const std::string& file : options.files)
     if (!file.empty()) meshes.emplace_back(path_of(file).stem().string(), plain_mesh(path_of(file)));

@@ -3,13 +3,17 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
-import { basename, extname, join } from 'node:path';
+import { basename, dirname, extname, join } from 'node:path';
 import { openPage } from './browser.mjs';
 import { readDocument, trianglesOfScene } from './glb.mjs';
 import { makeCrowd, makeMixedTube, makeTube } from './made.mjs';
+import { serveSlowly } from './slow_server.mjs';
 import { Log, openSite, readOptions, repository, skip } from './suite.mjs';
 
 const leastLikeness = 0.98; // of 1: what differs is rounded to the stream's grids
+const slideTime = 400; // milliseconds
+const mostHoles = 0.002; // of the pixels that are covered; none of them near an outline
+const mostWorse = 0.005; // by how much a picture may be less like the original than one of fewer bytes
 const leastAtPixel = 0.97; // of 1: no surface lies farther off than a pixel
 
 const options = readOptions();
@@ -38,15 +42,19 @@ function subjects(folder) {
     if (!existsSync(model)) return skip(model) ?? [];
     const name = basename(model, extname(model));
     if (options.files.length > 0 && !options.files.includes(name)) return [];
-    const path = join(folder, name, `${name}.${format}`);
-    mkdirSync(join(folder, name), { recursive: true });
-    execFileSync(options.program, ['build', model, '-o', path, '-q', '--profile', 'stream', '--effort', '3'],
-      { stdio: ['ignore', 'ignore', 'ignore'] });
-    return [{ name, model, path }];
+    const build = (...place) => {
+      const path = join(folder, name, ...place);
+      mkdirSync(dirname(path), { recursive: true });
+      execFileSync(options.program, ['build', model, '-o', path, '-q', '--profile', 'stream', '--effort', '3'],
+        { stdio: ['ignore', 'ignore', 'ignore'] });
+      return path;
+    };
+    const path = build(`${name}.${format}`);
+    return [{ name, model, path, beside: format === 'gltf' ? path : build('beside', `${name}.gltf`) }];
   });
 }
 
-function checksOf(site, page, { name, model, path }, prefix) {
+function checksOf(site, page, { name, model, path, beside }, prefix) {
   const picture = (label) => page.page.screenshot({ path: join(options.output, `${prefix}-${name}-${label}.png`) });
   const settle = () => page.ask(() => window.settle());
   let whole;
@@ -101,6 +109,31 @@ function checksOf(site, page, { name, model, path }, prefix) {
       assert.ok(likeness >= leastLikeness, `similarity ${likeness.toFixed(4)}`);
       return `${state.drawn} triangles, ${state.bytes} bytes, similarity ${likeness.toFixed(4)}`;
     },
+    'shows more the more bytes there are': async () => {
+      const line = await serveSlowly(dirname(beside), { share: 0, piece: 1000 });
+      await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
+      await settle();
+      const covered = await page.ask(() => window.keepPicture());
+      await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
+      const seen = [];
+      for (const percent of [5, 25, 100]) {
+        line.change({ share: percent / 100 });
+        await page.ask(() => window.setPixelError(0));
+        const { drawn } = percent === 100 ? await page.ask(() => window.finish()) : await settle();
+        await picture(`${percent}-percent`);
+        const [likeness, holes] = await page.ask(async () => [await window.likeKept(), await window.holes()]);
+        seen.push({ percent, drawn, likeness, holes });
+      }
+      await page.ask(() => window.closeFile());
+      await line.close();
+      const text = seen.map(({ percent, drawn, likeness, holes }) => `${percent} %: ${drawn} triangles, ${likeness.toFixed(4)}, ${holes} holes`).join('; ');
+      seen.forEach(({ drawn, likeness, holes, percent }, i) => {
+        assert.ok(percent < 25 || holes <= mostHoles * covered, text);
+        assert.ok(i === 0 || (drawn >= seen[i - 1].drawn && likeness >= seen[i - 1].likeness - mostWorse), text);
+      });
+      assert.ok(seen[2].likeness >= leastLikeness && seen[0].drawn < seen[2].drawn, text);
+      return text;
+    },
     'is hit by rays': async () => {
       const refined = await page.ask(() => window.hit());
       await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
@@ -154,6 +187,48 @@ function checksOf(site, page, { name, model, path }, prefix) {
   };
 }
 
+/** Vertices slide from level to level, in a page of its own, and are in the end where they are without. */
+function checksOfSlides(site, page, { name, path }, prefix) {
+  const picture = (label) => page.page.screenshot({ path: join(options.output, `${prefix}-${name}-${label}.png`) });
+  let whole;
+  const go = (pixelError, radii, milliseconds) =>
+    page.ask(([pixels, distance, time]) => {
+      window.setPixelError(pixels);
+      window.moveTo(distance);
+      return window.frames(time);
+    }, [pixelError, radii, milliseconds]);
+  const between = (frames) => {
+    const ends = [frames[0].sum, frames.at(-1).sum];
+    return new Set(frames.map(({ sum }) => sum).filter((sum) => !ends.includes(sum))).size;
+  };
+  let slides;
+  return {
+    'slides to a coarser level': async () => {
+      const { meshes } = await readDocument(path);
+      slides = !prefix.includes('babylon') || !meshes.some(({ primitives }) => primitives.some(({ targets }) => targets));
+      await page.ask(() => window.forget());
+      await page.ask((url) => window.openFile(url, 'draco', true), site.url(path));
+      await page.ask(() => window.finish());
+      const [frame] = await go(0, 3.4, 1);
+      whole = frame;
+      const frames = await go(4, 40, slideTime / 2);
+      await go(4, 3.4, 1);
+      await picture('sliding');
+      frames.push(...(await go(4, 40, 6 * slideTime)));
+      assert.ok(frames.at(-1).drawn < whole.drawn, `${frames.at(-1).drawn} of ${whole.drawn} triangles`);
+      assert.ok(slides ? between(frames) >= 2 : between(frames) === 0, `${between(frames)} frames between`);
+      return `${between(frames)} frames between, ${frames.at(-1).drawn} of ${whole.drawn} triangles`;
+    },
+    'and back, to where all was': async () => {
+      const frames = await go(0, 3.4, 6 * slideTime);
+      assert.deepEqual(frames.at(-1), whole);
+      assert.ok(slides ? between(frames) >= 2 : between(frames) === 0, `${between(frames)} frames between`);
+      await page.ask(() => window.closeFile());
+      return `${between(frames)} frames between`;
+    },
+  };
+}
+
 /** Checks all models in a page of `pages`; `prefix` is of the names of its pictures. */
 export async function checkRefined(name, prefix) {
   const folder = join(options.output, prefix);
@@ -163,6 +238,8 @@ export async function checkRefined(name, prefix) {
   const site = await openSite({ ...options, more: { package: options.package } });
   const page = await openPage(site.browser, `${site.address}/pages/${name}`);
   for (const subject of found) await log.run(subject.name, checksOf(site, page, subject, prefix));
+  const sliding = await openPage(site.browser, `${site.address}/pages/${name}?morph=${slideTime}`);
+  for (const subject of found) await log.run(`${subject.name} with slides`, checksOfSlides(site, sliding, subject, prefix));
   await site.close();
   log.close();
 }

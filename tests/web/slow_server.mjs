@@ -8,7 +8,7 @@ import { join, normalize, sep } from 'node:path';
 /**
  * Starts it. `behaviour` may be changed at any time: ranges 'yes' | 'no' | 'wrong' | 'first', which is the first half whatever
  * is asked for; piece, bytes sent at once; rate, bytes a second of each answer; line, bytes a second of all together; delay,
- * milliseconds before an answer begins; limit, bytes of a file before which it stops; drop, bytes
+ * milliseconds before an answer begins; limit, bytes of a file before which it stops; share, the same of a stream's (.lods) bytes, of 1; drop, bytes
  * after which each connection breaks; swap, whether every other answer waits for the one after it, 200 ms at most.
  */
 export async function serveSlowly(folder, behaviour) {
@@ -22,7 +22,8 @@ export async function serveSlowly(folder, behaviour) {
     lineFree = Math.max(lineFree, now) + (1000 * length) / line;
     return new Promise((resolve) => setTimeout(resolve, Math.max((1000 * length) / rate, lineFree - now)));
   };
-  const isHeld = (at) => at >= (behaviour.limit ?? Infinity);
+  const limitOf = (path, bytes) =>
+    Math.min(behaviour.limit ?? Infinity, path.endsWith('.lods') && behaviour.share < 1 ? Math.ceil(behaviour.share * bytes.length) : Infinity);
   const moved = () => new Promise((resolve) => waiting.add(resolve));
 
   async function respond(request, response) {
@@ -49,8 +50,8 @@ export async function serveSlowly(folder, behaviour) {
     if (behaviour.delay) await new Promise((resolve) => setTimeout(resolve, behaviour.delay));
     const { drop = Infinity } = behaviour;
     for (let at = first; at < end && !response.destroyed; ) {
-      while (isHeld(at) && !response.destroyed) await Promise.race([moved(), new Promise((resolve) => response.once('close', resolve))]);
-      const length = Math.min(behaviour.piece ?? 1 << 16, end - at, (behaviour.limit ?? Infinity) - at);
+      while (at >= limitOf(path, bytes) && !response.destroyed) await Promise.race([moved(), new Promise((resolve) => response.once('close', resolve))]);
+      const length = Math.min(behaviour.piece ?? 1 << 16, end - at, limitOf(path, bytes) - at);
       if (at + length - first > drop) return void response.destroy();
       response.write(bytes.subarray(at, at + length));
       at += length;

@@ -9,6 +9,8 @@ export type RefinedMesh = refined.RefinedMesh<Geometry>;
 export type Refinement = refined.Refinement<Geometry>;
 
 export interface ExtensionOptions extends refined.RefinementOptions {
+  /** Milliseconds in which vertices slide from level to level, instead of jumping; those of meshes with morph targets jump. Default 0: none. */
+  morph?: number;
   /** Called when a file has been loaded that refines itself. */
   onLoad?: (refinement: Refinement) => void;
 }

@@ -7,7 +7,9 @@ import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { registerGLTFExtension, unregisterGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
 import { GrowingArray } from './growing_array.js';
 import { EXTENSION, RefinedMesh, Refinement, ownAttributes, streamOf, targetOf } from './refined_mesh.js';
+import { Slides, wayOf } from './slides.js';
 import { pixelsOfInstances, pixelsThrough } from './view.js';
+import { checkRange } from './wasm.js';
 
 const KINDS = {
   POSITION: VertexBuffer.PositionKind,
@@ -47,8 +49,31 @@ class GrowingBuffer {
     return KINDS[this.#format.name];
   }
 
+  get array() {
+    return this.#array.array;
+  }
+
+  get itemSize() {
+    return this.#format.componentCount;
+  }
+
+  /** Whether its values slide where vertices do: joints are numbers of bones, which mean nothing in between, and so weights stay, too. */
+  get slides() {
+    const { name, normalized, componentType } = this.#format;
+    return !/^(JOINTS|WEIGHTS)_/.test(name) && (normalized || componentType === VertexBuffer.FLOAT);
+  }
+
   write(begin, values) {
     this.#stale = this.#array.write(begin, values) || this.#stale;
+    this.#upload(begin, values);
+  }
+
+  /** Has elements uploaded that were written to the array. */
+  touch(begin, count) {
+    this.#upload(begin, this.array.subarray(begin * this.itemSize, (begin + count) * this.itemSize));
+  }
+
+  #upload(begin, values) {
     if (!this.vertices || this.#stale || values.length === 0) return;
     // Not by the buffer's own function, which then forgets what it has in memory: rays ask for that.
     this.#engine.updateDynamicVertexBuffer(this.vertices.getBuffer(), values, begin * this.#stride, values.byteLength);
@@ -83,17 +108,51 @@ class GeometryBuffers {
   #buffers; // of positions, then of the stream's attributes
   #indices; // by group
   #wedges = 0;
+  #level; // that has been written last
+  #slides; // undefined where nothing slides
   #moved = false; // there are vertices that targets do not have, or have elsewhere
 
-  constructor(stream, engine, parts, json, primitives) {
+  /** `morph`: milliseconds in which vertices slide from level to level; `onStep` is called when they have. */
+  constructor(stream, engine, parts, json, primitives, { morph, onStep }) {
     const whole = stream.chunks.at(-1);
     this.#stream = stream;
     this.#parts = parts.map((part) => ({ ...part, own: ownAttributes(json, primitives[part.primitive], stream.attributes) }));
     this.#buffers = [POSITIONS, ...stream.attributes].map((format) => new GrowingBuffer(engine, format, whole.vertexCount));
     this.#indices = stream.groups.map(() => new GrowingArray(1, 3 * whole.faceCount));
+    // Targets would have to slide along, all of them in each frame: they lie where they move vertices to.
+    if (morph > 0 && !stream.attributes.some(({ name }) => targetOf(name))) this.#slides = new Slides(morph, onStep);
   }
 
-  write({ wedges, moved, groups }) {
+  get #sliding() {
+    return this.#buffers.filter(({ slides }) => slides);
+  }
+
+  /** Has vertices slide to a coarser level, before that is written; resolves when they are there. */
+  async leave(update) {
+    if (this.#slides && wayOf(this.#level, update) < 0) await this.#slides.coarsen(update, this.#sliding);
+  }
+
+  /** Takes an update, from whose level before, where that `isShown`, vertices slide. */
+  write(update, isShown) {
+    const slides = isShown && this.#slides && wayOf(this.#level, update) > 0;
+    this.#level = update.level;
+    if (slides) this.#slides.refine(update, this.#sliding, () => this.#write(update));
+    else this.#write(update);
+  }
+
+  /** Moves what slides to where it is by now: for who draws. */
+  step() {
+    if (!this.#slides || this.#slides.isIdle) return;
+    this.#slides.step();
+    for (const { geometry } of this.#parts) geometry._resetPointsArrayCache?.(); // of what rays are asked for
+  }
+
+  /** Has what slides be where it is to be. */
+  finish() {
+    this.#slides?.finish();
+  }
+
+  #write({ wedges, moved, groups }) {
     if (wedges.end > wedges.begin) {
       [wedges.positions, ...wedges.attributes].forEach((values, i) => this.#buffers[i].write(wedges.begin, values));
       this.#wedges = wedges.end;
@@ -276,7 +335,8 @@ class LodestoneExtension {
     this.name = EXTENSION;
     this.enabled = true;
     this.#loader = loader;
-    this.#options = { pixelError: 1, ...options, ...loader.parent.extensionOptions[EXTENSION] };
+    this.#options = { pixelError: 1, morph: 0, ...options, ...loader.parent.extensionOptions[EXTENSION] };
+    checkRange('morph', this.#options.morph, 0, Number.MAX_SAFE_INTEGER);
   }
 
   dispose() {
@@ -319,7 +379,8 @@ class LodestoneExtension {
     // The loader is gone when its stream is opened.
     const { gltf } = loader;
     const engine = loader.babylonScene.getEngine();
-    const makeBuffers = (stream) => new GeometryBuffers(stream, engine, parts, gltf, definition.primitives);
+    const sliding = { morph: this.#options.morph, onStep: () => this.#options.onUpdate?.(mesh) };
+    const makeBuffers = (stream) => new GeometryBuffers(stream, engine, parts, gltf, definition.primitives, sliding);
     const mesh = new RefinedMesh(this.#locate(extension), shown, this.#options, makeBuffers);
     mesh.geometries = parts.map(({ geometry }) => geometry);
     mesh.primitiveCount = faces.size;

@@ -1,6 +1,16 @@
 // Vertices that slide from where they are drawn to where they are to be: geomorphs, by writing to the buffers that are drawn
 // from, so that any material goes with them.
 
+/** Of the faces of levels between which vertices slide: from much coarser ones they would come out of what looks like nothing. */
+const MOST_RATIO = 32;
+
+/** Which way vertices slide with an update from a level, if there is one: 1 to a finer one, -1 to a coarser one, 0 not at all. */
+export function wayOf(from, { level, morph }) {
+  if (!morph || !from) return 0;
+  const ratio = level.faceCount / from.faceCount;
+  return ratio < MOST_RATIO && 1 / ratio < MOST_RATIO ? Math.sign(level.position - from.position) : 0;
+}
+
 const nextFrame = globalThis.requestAnimationFrame?.bind(globalThis) ?? ((job) => setTimeout(job, 16));
 
 /** Returns elements of a typed array, a copy. `elements`: their numbers. */

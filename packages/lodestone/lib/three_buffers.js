@@ -3,7 +3,7 @@
 import { BufferAttribute, Vector3 } from 'three';
 import { GrowingArray } from './growing_array.js';
 import { targetOf } from './refined_mesh.js';
-import { Slides } from './slides.js';
+import { Slides, wayOf } from './slides.js';
 import { pixelsAt } from './view.js';
 
 const NAMES = {
@@ -18,9 +18,6 @@ const NAMES = {
   JOINTS_0: 'skinIndex',
   WEIGHTS_0: 'skinWeight',
 };
-
-/** Of the faces of levels between which vertices slide: from much coarser ones they would come out of what looks like nothing. */
-const MOST_RATIO = 32;
 
 /** A buffer that grows: three.js uploads what `write` is given and no more, but for when it grows. */
 class GrowingAttribute {
@@ -108,16 +105,9 @@ export class StreamBuffers {
     return own.filter(slides).map(({ growing }) => growing);
   }
 
-  /** Which way vertices slide with an update: 1 to a finer level, -1 to a coarser one, 0 not at all. */
-  #wayOf({ level, morph }) {
-    if (!this.#slides || !morph || !this.#level) return 0;
-    const ratio = level.faceCount / this.#level.faceCount;
-    return ratio < MOST_RATIO && 1 / ratio < MOST_RATIO ? Math.sign(level.position - this.#level.position) : 0;
-  }
-
   /** Has vertices slide to a coarser level, before that is written; resolves when they are there. */
   async leave(update) {
-    if (this.#wayOf(update) < 0) await this.#slides.coarsen(update, this.#sliding);
+    if (this.#slides && wayOf(this.#level, update) < 0) await this.#slides.coarsen(update, this.#sliding);
   }
 
   /**
@@ -125,7 +115,7 @@ export class StreamBuffers {
    * anew: all of them, since they share those of vertices.
    */
   write(update, isShown = true) {
-    const slides = isShown && this.#wayOf(update) > 0;
+    const slides = isShown && this.#slides && wayOf(this.#level, update) > 0;
     this.#level = update.level;
     if (!slides) return this.#write(update);
     let grown = false;

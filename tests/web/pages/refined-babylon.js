@@ -18,7 +18,7 @@ import '@babylonjs/loaders/glTF/2.0/index.js';
 import { DetailBudget } from 'lodestone/budget';
 import { refinementOf, registerLodestone } from 'lodestone/babylon';
 import { settle } from './settle.js';
-import { similarity } from './ssim.js';
+import { holesIn, similarity } from './ssim.js';
 
 const SIZE = 512;
 
@@ -46,7 +46,8 @@ let budget;
 let updates = 0;
 let floor;
 let generator;
-registerLodestone({ onUpdate: () => ++updates });
+const morph = Number(new URLSearchParams(location.search).get('morph') ?? 0);
+registerLodestone({ morph, onUpdate: () => ++updates });
 
 /** Loads a file; with the extension where `refines`, and a budget where `triangles` says so. */
 window.openFile = async (url, compression, refines, triangles) => {
@@ -139,11 +140,35 @@ async function picture() {
   return { rgba: new Uint8Array(rgba.buffer.slice(0)), covered };
 }
 
-/** Keeps the picture for comparison. */
+/** Keeps the picture for comparison; returns how many pixels are covered. */
 window.keepPicture = async () => {
   kept = await picture();
+  return kept.covered.reduce((sum, one) => sum + one, 0);
 };
 window.likeKept = async () => similarity(kept, await picture(), SIZE, SIZE);
+
+/** How many pixels show the background where the picture that is kept does not, nor around there. */
+window.holes = async () => holesIn(kept, await picture(), SIZE, SIZE);
+
+/** A number that changes as vertices slide. */
+function sumOfPositions() {
+  let sum = 0;
+  for (const mesh of loaded.meshes)
+    mesh.geometry?.getVerticesData('position').forEach((number) => {
+      sum += Math.abs(number);
+    });
+  return sum;
+}
+
+/** Draws frames for so long; returns of each how many triangles it had, and a number that changes as vertices slide. */
+window.frames = async (milliseconds) => {
+  const frames = [];
+  for (const end = performance.now() + milliseconds; performance.now() < end; ) {
+    frames.push({ drawn: window.drawFrame().drawn, sum: sumOfPositions() });
+    await new Promise((resolve) => setTimeout(resolve, 5));
+  }
+  return frames;
+};
 
 /** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
 window.hit = () => {

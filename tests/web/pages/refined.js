@@ -4,7 +4,7 @@ import { DetailBudget } from 'lodestone/budget';
 import { LodestonePlugin } from 'lodestone/gltf';
 import { makeLoader } from './scene.js';
 import { settle } from './settle.js';
-import { similarity } from './ssim.js';
+import { holesIn, similarity } from './ssim.js';
 
 const SIZE = 512;
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
@@ -125,11 +125,34 @@ function picture() {
   return { rgba, covered };
 }
 
-/** Keeps the picture for comparison. */
+/** Keeps the picture for comparison; returns how many pixels are covered. */
 window.keepPicture = () => {
   kept = picture();
+  return kept.covered.reduce((sum, one) => sum + one, 0);
 };
 window.likeKept = () => similarity(kept, picture(), SIZE, SIZE);
+
+/** How many pixels show the background where the picture that is kept does not, nor around there. */
+window.holes = () => holesIn(kept, picture(), SIZE, SIZE);
+
+/** A number that changes as vertices slide. */
+function sumOfPositions() {
+  let sum = 0;
+  gltf.scene.traverse(({ geometry }) => geometry?.attributes.position.array.forEach((number) => {
+    sum += Math.abs(number);
+  }));
+  return sum;
+}
+
+/** Draws frames for so long; returns of each how many triangles it had, and a number that changes as vertices slide. */
+window.frames = async (milliseconds) => {
+  const frames = [];
+  for (const end = performance.now() + milliseconds; performance.now() < end; ) {
+    frames.push({ drawn: window.drawFrame().drawn, sum: sumOfPositions() });
+    await new Promise((resolve) => setTimeout(resolve, 5));
+  }
+  return frames;
+};
 
 /** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
 window.hit = () => {

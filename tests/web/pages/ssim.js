@@ -49,3 +49,18 @@ export function similarity(first, second, width, height) {
   }
   return count === 0 ? 1 : sum / count;
 }
+
+const MARGIN = 3; // pixels: as near to its outline a coarse level need not cover what the whole does
+
+/** How many pixels the first picture covers, well within its outline, and the second does not: where a crack shows the background. */
+export function holesIn(whole, shown, width, height) {
+  const isWithin = (x, y) => {
+    for (let dy = -MARGIN; dy <= MARGIN; ++dy)
+      for (let dx = -MARGIN; dx <= MARGIN; ++dx) if (!whole.covered[(y + dy) * width + x + dx]) return false;
+    return true;
+  };
+  let holes = 0;
+  for (let y = MARGIN; y < height - MARGIN; ++y)
+    for (let x = MARGIN; x < width - MARGIN; ++x) if (!shown.covered[y * width + x] && isWithin(x, y)) ++holes;
+  return holes;
+}

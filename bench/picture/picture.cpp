@@ -1,4 +1,4 @@
-#include "picture.h"
+#include "picture/picture.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,10 @@ namespace lodestone::bench {
 namespace {
 
 constexpr double kWidth = 380, kHeight = 300;  // of a panel, pixels
-constexpr double kLeft = 52, kRight = 12, kTop = 30, kBottom = 40;
+constexpr double kLeft = 60, kRight = 12, kTop = 30, kBottom = 40;
 constexpr double kLegendLine = 18;
-constexpr double kMargin = 0.06;  // of an axis, free at each end
+constexpr double kMargin = 0.06;   // of an axis, free at each end
+constexpr std::size_t kMany = 10;  // points, whose dots are small then
 constexpr std::array kColours = {"#0b6e4f", "#1f77b4", "#d1495b", "#8d6a9f",
                                  "#e08e0b", "#5c5c5c", "#a0522d", "#2a9d8f"};
 
@@ -54,24 +55,36 @@ struct Range {
   void add(double value) { least = std::min(least, value), most = std::max(most, value); }
 };
 
-std::string axes(const Axis& time, const Axis& error, const std::string& title) {
+std::string axes(const Axis& cost, const Axis& error, const std::string& title, const std::string& unit) {
   const double right = kWidth - kRight, bottom = kHeight - kBottom;
   std::string svg = format("<text x='%g' y='18' class='title'>%s</text>\n", kLeft, title.c_str());
-  for (const double tick : time.ticks())
-    svg += format("<line x1='%.1f' x2='%.1f' y1='%g' y2='%g'/><text x='%.1f' y='%g' class='middle'>%g s</text>\n",
-                  time.place(tick), time.place(tick), kTop, bottom, time.place(tick), bottom + 16, tick);
+  for (const double tick : cost.ticks())
+    svg += format("<line x1='%.1f' x2='%.1f' y1='%g' y2='%g'/><text x='%.1f' y='%g' class='middle'>%g %s</text>\n",
+                  cost.place(tick), cost.place(tick), kTop, bottom, cost.place(tick), bottom + 16, tick, unit.c_str());
   for (const double tick : error.ticks())
     svg += format("<line x1='%g' x2='%g' y1='%.1f' y2='%.1f'/><text x='%g' y='%.1f' class='end'>%g %%</text>\n", kLeft,
                   right, error.place(tick), error.place(tick), kLeft - 6, error.place(tick) + 4, tick);
   return svg;
 }
 
-std::string marks(const Axis& time, const Axis& error, const TimedSeries& series, const char* colour) {
+std::string mark_lines(const Axis& cost, const std::vector<CostMark>& marks) {
+  std::string svg;
+  for (const CostMark& mark : marks) {
+    const double x = cost.place(mark.cost);
+    svg += format("<line x1='%.1f' x2='%.1f' y1='%g' y2='%g' class='mark'/><text x='%.1f' y='%g'>%s</text>\n", x, x,
+                  kTop, kHeight - kBottom, x + 3, kTop + 9, mark.label.c_str());
+  }
+  return svg;
+}
+
+std::string dots_and_line(const Axis& cost, const Axis& error, const ErrorSeries& series, const char* colour) {
   std::string path, dots;
-  for (const TimedError& point : series.points) {
-    const double x = time.place(point.seconds), y = error.place(point.error);
+  for (const CostedError& point : series.points) {
+    const double x = cost.place(point.cost), y = error.place(point.error);
+    if (!path.empty() && series.is_stepped) path += format("H%.1f", x);
     path += format("%s%.1f %.1f", path.empty() ? "M" : "L", x, y);
-    dots += format("<circle cx='%.1f' cy='%.1f' r='4' fill='%s'/>", x, y, colour);
+    dots += format("<circle cx='%.1f' cy='%.1f' r='%g' fill='%s'/>", x, y, series.points.size() > kMany ? 2.5 : 4.0,
+                   colour);
     if (!point.label.empty())
       dots += format("<text x='%.1f' y='%.1f' fill='%s'>%s</text>", x + 6, y - 6, colour, point.label.c_str());
   }
@@ -79,35 +92,38 @@ std::string marks(const Axis& time, const Axis& error, const TimedSeries& series
   return format("<path stroke='%s' fill='none' d='", colour) + path + "'/>" + dots + "\n";
 }
 
-std::string panel_picture(const TimedPanel& panel) {
-  Range seconds, errors;
-  for (const TimedSeries& series : panel.series)
-    for (const TimedError& point : series.points) seconds.add(point.seconds), errors.add(point.error);
-  const Axis time(seconds.least, seconds.most, kLeft, kWidth - kRight);
+std::string panel_picture(const ErrorPanel& panel, const std::string& unit) {
+  Range costs, errors;
+  for (const ErrorSeries& series : panel.series)
+    for (const CostedError& point : series.points) costs.add(point.cost), errors.add(point.error);
+  const Axis cost(costs.least, costs.most, kLeft, kWidth - kRight);
   const Axis error(errors.least, errors.most, kHeight - kBottom, kTop);
-  std::string svg = axes(time, error, panel.title);
+  std::string svg = axes(cost, error, panel.title, unit) + mark_lines(cost, panel.marks);
   for (std::size_t i = 0; i < panel.series.size(); ++i)
-    svg += marks(time, error, panel.series[i], kColours[i % kColours.size()]);
+    svg += dots_and_line(cost, error, panel.series[i], kColours[i % kColours.size()]);
   return svg;
 }
 
 }  // namespace
 
-std::string error_time_picture(const std::vector<TimedPanel>& panels) {
-  const std::vector<TimedSeries>& named = panels.front().series;
-  const double width = kWidth * static_cast<double>(panels.size());
-  const double height = kHeight + kLegendLine * static_cast<double>(named.size()) + 10;
+std::string error_picture(const std::vector<ErrorPanel>& panels, const std::string& unit, std::size_t columns) {
+  const std::vector<ErrorSeries>& named = panels.front().series;
+  const std::size_t rows = (panels.size() + columns - 1) / columns;
+  const double width = kWidth * static_cast<double>(columns), end = kHeight * static_cast<double>(rows);
+  const double height = end + kLegendLine * static_cast<double>(named.size()) + 10;
   std::string svg = format("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %g %g' width='%g' height='%g'>\n",
                            width, height, width, height);
   svg +=
       "<style>text{font:11px sans-serif;fill:#444}.title{font-weight:bold;font-size:13px;fill:#111}"
-      ".middle{text-anchor:middle}.end{text-anchor:end}line{stroke:#e4e4e4}path{stroke-width:1.5}</style>\n"
+      ".middle{text-anchor:middle}.end{text-anchor:end}line{stroke:#e4e4e4}.mark{stroke:#999;stroke-dasharray:3 3}"
+      "path{stroke-width:1.5}</style>\n"
       "<rect width='100%' height='100%' fill='#fff'/>\n";
   for (std::size_t i = 0; i < panels.size(); ++i)
-    svg += format("<g transform='translate(%g 0)'>\n", kWidth * static_cast<double>(i)) + panel_picture(panels[i]) +
-           "</g>\n";
+    svg += format("<g transform='translate(%g %g)'>\n", kWidth * static_cast<double>(i % columns),
+                  kHeight * static_cast<double>(i / columns)) +
+           panel_picture(panels[i], unit) + "</g>\n";
   for (std::size_t i = 0; i < named.size(); ++i) {
-    const double y = kHeight + kLegendLine * static_cast<double>(i) + 6;
+    const double y = end + kLegendLine * static_cast<double>(i) + 6;
     svg += format("<circle cx='%g' cy='%g' r='4' fill='%s'/><text x='%g' y='%g'>%s</text>\n", kLeft + 4, y,
                   kColours[i % kColours.size()], kLeft + 14, y + 4, named[i].name.c_str());
   }
