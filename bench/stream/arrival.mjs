@@ -1,8 +1,8 @@
 // What a page in three.js shows when, while a model comes over a slow line: a file of `--profile stream` by the package's
-// plugin, beside the whole model in one piece by Draco and by meshoptimizer. Materials are left without their images, which
-// would take longer than any geometry.
+// plugin, beside the whole model in one piece by Draco, by meshoptimizer and, where its npm package is named, by gltfpack -cc.
+// Materials are left without their images, which would take longer than any geometry.
 //
-//   node bench/stream/arrival.mjs --program PROGRAM --package FOLDER --output FOLDER MODEL.gltf
+//   node bench/stream/arrival.mjs --program PROGRAM --package FOLDER --output FOLDER [--gltfpack FOLDER/cli.js] MODEL.gltf
 //
 // Needs what ./run web builds. All connections share one line of 5 Mbit/s with 40 ms from a request to its first byte. Best on a quiet machine.
 import { execFileSync } from 'node:child_process';
@@ -37,6 +37,20 @@ const files = [
 ];
 for (const [, name, settings] of files)
   execFileSync(options.program, ['build', plain, '-o', join(folder, name), '-q', ...settings], { stdio: ['ignore', 'ignore', 'ignore'] });
+if (options.gltfpack) {
+  execFileSync('node', [options.gltfpack, '-i', plain, '-o', join(folder, 'gltfpack.glb'), '-cc'], { stdio: ['ignore', 'ignore', 'inherit'] });
+  files.push(['whole, gltfpack -cc', 'gltfpack.glb', [], 'meshopt', false]);
+}
+
+/** Of a .gltf all that it names, too. */
+function bytesOf(name) {
+  const path = join(folder, name);
+  if (!name.endsWith('.gltf')) return statSync(path).size;
+  const { buffers = [], meshes = [] } = JSON.parse(readFileSync(path, 'utf8'));
+  const beside = [...buffers, ...meshes.map(({ extensions }) => extensions?.LODESTONE_removal_stream ?? {})].map(({ uri }) => uri).filter(Boolean);
+  return statSync(path).size + beside.reduce((sum, uri) => sum + statSync(join(folder, decodeURIComponent(uri))).size, 0);
+}
+
 const site = await openSite({ ...options, more: { package: options.package } });
 const line = await serveSlowly(folder, { line: 5e6 / 8, delay: 40, piece: 2048 });
 const page = await openPage(site.browser, `${site.address}/pages/refined.html`);
@@ -50,7 +64,7 @@ async function arrive([, name, , compression, refines]) {
     await window.openFile(url, compression, refines);
     window.drawFrame();
     const times = { first: since(), longest: 0 };
-    if (!refines) return { ...times, pixel: times.first, end: times.first, triangles: window.drawFrame().drawn };
+    if (!refines) return { ...times, pixel: times.first, end: times.first, triangles: window.drawFrame().drawn, fetched: 0 };
     window.setPixelError(1);
     let last = window.drawFrame();
     times.pixel = since();
@@ -62,6 +76,7 @@ async function arrive([, name, , compression, refines]) {
       last = state;
     }
     times.triangles = last.drawn;
+    times.fetched = last.bytes;
     return times;
   }, [`${line.address}/${name}`, compression, refines]);
   if (refines) {
@@ -80,10 +95,10 @@ async function arrive([, name, , compression, refines]) {
 const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
 const seen = files.map(() => []);
 for (let run = 0; run < runs; ++run) for (const [i, file] of files.entries()) seen[i].push(await arrive(file));
-console.log('| | bytes | first picture, s | within a pixel, s | triangles then | all, s | longest turn without drawing, ms |\n|---|---|---|---|---|---|---|');
+console.log('| | bytes | first picture, s | within a pixel, s | triangles then | of streams, bytes | all, s | longest turn without drawing, ms |\n|---|---|---|---|---|---|---|---|');
 for (const [i, [title, name]] of files.entries()) {
   const of = (key) => median(seen[i].map((times) => times[key]));
-  console.log(`| ${title} | ${statSync(join(folder, name)).size} | ${of('first').toFixed(2)} | ${of('pixel').toFixed(2)} | ${of('triangles')} | ${of('end').toFixed(2)} | ${of('longest').toFixed(0)} |`);
+  console.log(`| ${title} | ${bytesOf(name)} | ${of('first').toFixed(2)} | ${of('pixel').toFixed(2)} | ${of('triangles')} | ${of('fetched')} | ${of('end').toFixed(2)} | ${of('longest').toFixed(0)} |`);
 }
 await line.close();
 await site.close();

@@ -19,6 +19,7 @@ export function readOptions() {
       output: { type: 'string', default: 'build/web' },
       package: { type: 'string', default: 'build/web-package/package' },
       sums: { type: 'string' },
+      gltfpack: { type: 'string' }, // its cli.js, for what is measured beside it
     },
   });
   return { ...values, models: resolve(values.models), output: resolve(values.output), package: resolve(values.package), files: positionals };
