@@ -50,7 +50,7 @@ function subjects(folder) {
       return path;
     };
     const path = build(`${name}.${format}`);
-    return [{ name, model, path, beside: format === 'gltf' ? path : build('beside', `${name}.gltf`) }];
+    return [{ name, model, path, slides: !model.startsWith(options.models), beside: format === 'gltf' ? path : build('beside', `${name}.gltf`) }];
   });
 }
 
@@ -109,31 +109,6 @@ function checksOf(site, page, { name, model, path, beside }, prefix) {
       assert.ok(likeness >= leastLikeness, `similarity ${likeness.toFixed(4)}`);
       return `${state.drawn} triangles, ${state.bytes} bytes, similarity ${likeness.toFixed(4)}`;
     },
-    'shows more the more bytes there are': async () => {
-      const line = await serveSlowly(dirname(beside), { share: 0, piece: 1000 });
-      await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
-      await settle();
-      const covered = await page.ask(() => window.keepPicture());
-      await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
-      const seen = [];
-      for (const percent of [5, 25, 100]) {
-        line.change({ share: percent / 100 });
-        await page.ask(() => window.setPixelError(0));
-        const { drawn } = percent === 100 ? await page.ask(() => window.finish()) : await settle();
-        await picture(`${percent}-percent`);
-        const [likeness, holes] = await page.ask(async () => [await window.likeKept(), await window.holes()]);
-        seen.push({ percent, drawn, likeness, holes });
-      }
-      await page.ask(() => window.closeFile());
-      await line.close();
-      const text = seen.map(({ percent, drawn, likeness, holes }) => `${percent} %: ${drawn} triangles, ${likeness.toFixed(4)}, ${holes} holes`).join('; ');
-      seen.forEach(({ drawn, likeness, holes, percent }, i) => {
-        assert.ok(percent < 25 || holes <= mostHoles * covered, text);
-        assert.ok(i === 0 || (drawn >= seen[i - 1].drawn && likeness >= seen[i - 1].likeness - mostWorse), text);
-      });
-      assert.ok(seen[2].likeness >= leastLikeness && seen[0].drawn < seen[2].drawn, text);
-      return text;
-    },
     'is hit by rays': async () => {
       const refined = await page.ask(() => window.hit());
       await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
@@ -184,6 +159,31 @@ function checksOf(site, page, { name, model, path, beside }, prefix) {
       await page.ask(() => window.closeFile());
       return 'two poses';
     },
+    'shows more the more bytes there are': async () => {
+      const line = await serveSlowly(dirname(beside), { share: 0, piece: 1000 });
+      await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
+      await settle();
+      const covered = await page.ask(() => window.keepPicture());
+      await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
+      const seen = [];
+      for (const percent of [5, 25, 100]) {
+        line.change({ share: percent / 100 });
+        await page.ask(() => window.setPixelError(0));
+        const { drawn } = percent === 100 ? await page.ask(() => window.finish()) : await settle();
+        await picture(`${percent}-percent`);
+        const [likeness, holes] = await page.ask(async () => [await window.likeKept(), await window.holes()]);
+        seen.push({ percent, drawn, likeness, holes });
+      }
+      await page.ask(() => window.closeFile());
+      await line.close();
+      const text = seen.map(({ percent, drawn, likeness, holes }) => `${percent} %: ${drawn} triangles, ${likeness.toFixed(4)}, ${holes} holes`).join('; ');
+      seen.forEach(({ drawn, likeness, holes, percent }, i) => {
+        assert.ok(percent < 25 || holes <= mostHoles * covered, text);
+        assert.ok(i === 0 || (drawn >= seen[i - 1].drawn && likeness >= seen[i - 1].likeness - mostWorse), text);
+      });
+      assert.ok(seen[2].likeness >= leastLikeness && seen[0].drawn < seen[2].drawn, text);
+      return text;
+    },
   };
 }
 
@@ -209,20 +209,20 @@ function checksOfSlides(site, page, { name, path }, prefix) {
       await page.ask(() => window.forget());
       await page.ask((url) => window.openFile(url, 'draco', true), site.url(path));
       await page.ask(() => window.finish());
-      const [frame] = await go(0, 3.4, 1);
-      whole = frame;
-      const frames = await go(4, 40, slideTime / 2);
-      await go(4, 3.4, 1);
+      whole = (await go(0, 3.4, 6 * slideTime)).at(-1);
+      const frames = await go(1, 12, slideTime / 2);
+      await go(1, 3.4, 1);
       await picture('sliding');
-      frames.push(...(await go(4, 40, 6 * slideTime)));
+      frames.push(...(await go(1, 12, 6 * slideTime)));
       assert.ok(frames.at(-1).drawn < whole.drawn, `${frames.at(-1).drawn} of ${whole.drawn} triangles`);
-      assert.ok(slides ? between(frames) >= 2 : between(frames) === 0, `${between(frames)} frames between`);
+      assert.ok(!slides || between(frames) >= 3, `${between(frames)} frames between`);
       return `${between(frames)} frames between, ${frames.at(-1).drawn} of ${whole.drawn} triangles`;
     },
     'and back, to where all was': async () => {
       const frames = await go(0, 3.4, 6 * slideTime);
+      for (let tries = 0; tries < 5 && frames.at(-1).sum !== whole.sum; ++tries) frames.push(...(await go(0, 3.4, 6 * slideTime))); // a busy machine
       assert.deepEqual(frames.at(-1), whole);
-      assert.ok(slides ? between(frames) >= 2 : between(frames) === 0, `${between(frames)} frames between`);
+      assert.ok(!slides || between(frames) >= 3, `${between(frames)} frames between`);
       await page.ask(() => window.closeFile());
       return `${between(frames)} frames between`;
     },
@@ -239,7 +239,7 @@ export async function checkRefined(name, prefix) {
   const page = await openPage(site.browser, `${site.address}/pages/${name}`);
   for (const subject of found) await log.run(subject.name, checksOf(site, page, subject, prefix));
   const sliding = await openPage(site.browser, `${site.address}/pages/${name}?morph=${slideTime}`);
-  for (const subject of found) await log.run(`${subject.name} with slides`, checksOfSlides(site, sliding, subject, prefix));
+  for (const subject of found.filter(({ slides }) => slides)) await log.run(`${subject.name} with slides`, checksOfSlides(site, sliding, subject, prefix));
   await site.close();
   log.close();
 }
