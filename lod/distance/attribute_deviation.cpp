@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -21,7 +23,7 @@ namespace {
 
 using namespace detail;
 
-constexpr std::size_t kFacesOfStep = 16;  // between two words about the progress
+constexpr std::size_t kSamplesOfStep = 1024;  // looked up together, between two words about the progress
 
 /// An attribute that both meshes have.
 struct Shared {
@@ -45,19 +47,32 @@ std::vector<Shared> shared_attributes(const Mesh& original, const Mesh& level) {
   return shared;
 }
 
-/// The faces of one material, to look for the nearest among them.
-struct MaterialFaces {
-  std::vector<Index> source_face;
-  std::optional<SurfaceIndex> surface;
-  std::optional<CoincidentFaces> coincident;
+/// A point of the original.
+struct Sample {
+  Vec3 position;
+  Index face;
 };
 
-std::map<Index, MaterialFaces> split(const Mesh& level) {
+/// The faces of one material, to look for the nearest among them.
+struct MaterialFaces {
+  std::vector<Index> source_face;  // of each face of the index; empty: its own
+  std::optional<SurfaceIndex> made;
+  const SurfaceIndex* surface = nullptr;
+  std::optional<CoincidentFaces> coincident;
+
+  Index source(Index face) const { return source_face.empty() ? face : source_face[face]; }
+};
+
+/// `whole` is the level's index, where there is one already.
+std::map<Index, MaterialFaces> split(const Mesh& level, const SurfaceIndex* whole) {
   std::map<Index, MaterialFaces> parts;
   for (Index f = 0; f < level.face_count(); ++f) parts[level.material_of(f)].source_face.push_back(f);
   for (auto& [material, part] : parts) {
-    const Mesh faces = pick_faces(level, part.source_face);
-    part.surface.emplace(faces);
+    const bool is_all = parts.size() == 1;
+    const Mesh picked = is_all ? Mesh() : pick_faces(level, part.source_face);
+    const Mesh& faces = is_all ? level : picked;
+    if (is_all) part.source_face.clear();
+    part.surface = is_all && whole != nullptr ? whole : &part.made.emplace(faces);
     part.coincident.emplace(faces, *part.surface);
   }
   return parts;
@@ -79,71 +94,109 @@ double difference(const Shared& shared, const std::array<double, 4>& a, const st
   return std::sqrt(squares);
 }
 
-/// What the attributes of both meshes are at a place, and by how much each differs.
-std::vector<double> differences(const std::vector<Shared>& shared, const Mesh& original, Index face,
-                                const std::array<double, 3>& weights, const Mesh& level, Index there, const Vec3& p) {
-  const Barycentric at = nearest_weights(p, triangle_of(level, there));
-  std::vector<double> result;
+/// By how much each attribute differs between a point of the original and one of the level.
+void find_differences(const std::vector<Shared>& shared, const Mesh& original, const Sample& sample, const Mesh& level,
+                      Index face, const Vec3& point, std::vector<double>& found) {
+  const Barycentric from = nearest_weights(sample.position, triangle_of(original, sample.face));
+  const Barycentric to = nearest_weights(point, triangle_of(level, face));
+  found.clear();
   for (const Shared& s : shared)
-    result.push_back(difference(s, blend(s.original, s.width, original, face, weights),
-                                blend(s.level, s.width, level, there, at.weights)));
-  return result;
+    found.push_back(difference(s, blend(s.original, s.width, original, sample.face, from.weights),
+                               blend(s.level, s.width, level, face, to.weights)));
 }
 
-/// Calls `visit(face, weights, area)` for points spread evenly over every face: the centroids of its n² parts.
-template <class Visit>
-void for_each_sample(const Mesh& mesh, std::size_t sample_count, const Progress& progress, const Visit& visit) {
-  ProgressSteps steps(progress, mesh.face_count(), kFacesOfStep);
-  const double per_face = static_cast<double>(sample_count) / static_cast<double>(mesh.face_count());
-  const auto n = static_cast<int>(std::clamp(std::sqrt(per_face), 1.0, 16.0));
-  for (Index f = 0; f < mesh.face_count() && steps.next(); ++f) {
-    const double area = 0.5 * length(area_vector(mesh, f));
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; i + j < n; ++j)
-        for (int down = 0; down <= (i + j + 1 < n ? 1 : 0); ++down) {
-          const double u = (i + (down + 1) / 3.0) / n;
-          const double v = (j + (down + 1) / 3.0) / n;
-          visit(f, std::array{1 - u - v, u, v}, area / (n * n));
-        }
+/// Points at equal steps of the area, by the material of their faces. A surface without area has none.
+std::map<Index, std::vector<Sample>> spread_samples(const Mesh& mesh, std::size_t count) {
+  std::vector<double> until;
+  double area = 0;
+  for (Index f = 0; f < mesh.face_count(); ++f) until.push_back(area += length(area_vector(mesh, f)));
+  std::map<Index, std::vector<Sample>> samples;
+  Index face = 0;
+  for (std::size_t k = 0; k < count && area > 0; ++k) {
+    const double place = (static_cast<double>(k) + 0.5) / static_cast<double>(count) * area;
+    while (face + 1 < mesh.face_count() && until[face] < place) ++face;
+    samples[mesh.material_of(face)].push_back({point_on_face(mesh, face, k), face});
   }
+  return samples;
+}
+
+/// Adds up how attributes differ over samples of one material.
+class Comparison {
+ public:
+  Comparison(const Mesh& original, const Mesh& level, std::vector<Shared>& shared)
+      : original_(original), level_(level), shared_(shared) {}
+
+  void add(std::span<const Sample> samples, MaterialFaces& part, ProgressSteps& steps) {
+    std::vector<Vec3> points;
+    std::vector<SurfaceIndex::Hit> hits;
+    for (std::size_t first = 0; first < samples.size(); first += points.size()) {
+      const auto together = samples.subspan(first, std::min(kSamplesOfStep, samples.size() - first));
+      points.clear();
+      for (const Sample& sample : together) points.push_back(sample.position);
+      hits.assign(points.size(), {0, {}, kNoIndex, 0});
+      part.surface->nearest(points, hits);
+      for (std::size_t i = 0; i < hits.size() && steps.next(); ++i) add(together[i], hits[i], part);
+    }
+  }
+
+  void finish() {
+    const auto count = static_cast<double>(std::max<std::size_t>(count_, 1));
+    for (Shared& s : shared_) s.deviation.mean /= count, s.deviation.rms = std::sqrt(s.deviation.rms / count);
+  }
+
+ private:
+  void add(const Sample& sample, const SurfaceIndex::Hit& hit, MaterialFaces& part) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Index near : part.coincident->as_near_as(hit)) {
+      find_differences(shared_, original_, sample, level_, part.source(near), hit.point, found_);
+      const double sum = std::accumulate(found_.begin(), found_.end(), 0.0);
+      if (sum < least) least = sum, least_.swap(found_);
+    }
+    if (!(least < std::numeric_limits<double>::infinity())) return;
+    ++count_;
+    for (std::size_t i = 0; i < shared_.size(); ++i) {
+      AttributeDeviation& deviation = shared_[i].deviation;
+      deviation.mean += least_[i];
+      deviation.rms += least_[i] * least_[i];
+      deviation.maximum = std::max(deviation.maximum, least_[i]);
+    }
+  }
+
+  const Mesh& original_;
+  const Mesh& level_;
+  std::vector<Shared>& shared_;
+  std::size_t count_ = 0;
+  std::vector<double> found_, least_;
+};
+
+std::vector<AttributeDeviation> compare_attributes(const Mesh& original, const Mesh& level, const SurfaceIndex* index,
+                                                   std::size_t sample_count, const Progress& progress) {
+  std::vector<Shared> shared = shared_attributes(original, level);
+  std::vector<AttributeDeviation> result;
+  if (shared.empty() || original.face_count() == 0) return result;
+  std::map<Index, MaterialFaces> parts = split(level, index);
+  ProgressSteps steps(progress, sample_count, kSamplesOfStep);
+  Comparison comparison(original, level, shared);
+  for (const auto& [material, samples] : spread_samples(original, sample_count)) {
+    const auto part = parts.find(material);
+    // Where all of a material is gone there is nothing to compare with.
+    if (part != parts.end()) comparison.add(samples, part->second, steps);
+  }
+  comparison.finish();
+  for (Shared& s : shared) result.push_back(std::move(s.deviation));
+  return result;
 }
 
 }  // namespace
 
 std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const Mesh& level, std::size_t sample_count,
                                                    const Progress& progress) {
-  std::vector<Shared> shared = shared_attributes(original, level);
-  std::vector<AttributeDeviation> result;
-  if (shared.empty() || original.face_count() == 0) return result;
-  std::map<Index, MaterialFaces> parts = split(level);
-  double total = 0;
-  for_each_sample(original, sample_count, progress, [&](Index face, const std::array<double, 3>& weights, double area) {
-    const auto part = parts.find(original.material_of(face));
-    if (part == parts.end()) return;  // all of its material is gone: there is nothing to compare with
-    Vec3 p;
-    for (Index k = 0; k < 3; ++k) p += original.corner_position(3 * face + k) * weights[k];
-    const SurfaceIndex::Hit hit = part->second.surface->nearest(p, std::numeric_limits<double>::infinity());
-    if (hit.face == kNoIndex) return;
-    std::vector<double> least;
-    const auto sum = [](const std::vector<double>& d) { return std::accumulate(d.begin(), d.end(), 0.0); };
-    for (const Index near : part->second.coincident->as_near_as(hit)) {
-      const Index there = part->second.source_face[near];
-      std::vector<double> found = differences(shared, original, face, weights, level, there, hit.point);
-      if (least.empty() || sum(found) < sum(least)) least = std::move(found);
-    }
-    total += area;
-    for (std::size_t i = 0; i < shared.size(); ++i) {
-      AttributeDeviation& deviation = shared[i].deviation;
-      deviation.mean += area * least[i];
-      deviation.rms += area * least[i] * least[i];
-      deviation.maximum = std::max(deviation.maximum, least[i]);
-    }
-  });
-  for (Shared& s : shared) {
-    if (total > 0) s.deviation.mean /= total, s.deviation.rms = std::sqrt(s.deviation.rms / total);
-    result.push_back(std::move(s.deviation));
-  }
-  return result;
+  return compare_attributes(original, level, nullptr, sample_count, progress);
+}
+
+std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const MeasuredSurface& level,
+                                                   std::size_t sample_count, const Progress& progress) {
+  return compare_attributes(original, level.mesh(), &level.index(), sample_count, progress);
 }
 
 }  // namespace lodestone

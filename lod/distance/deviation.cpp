@@ -382,6 +382,7 @@ MeasuredSurface::MeasuredSurface(MeasuredSurface&&) noexcept = default;
 MeasuredSurface& MeasuredSurface::operator=(MeasuredSurface&&) noexcept = default;
 
 const Mesh& MeasuredSurface::mesh() const { return impl_->mesh; }
+const SurfaceIndex& MeasuredSurface::index() const { return impl_->index; }
 
 Deviation measure_deviation(const MeasuredSurface& first, const MeasuredSurface& second,
                             const DeviationOptions& options) {

@@ -5,6 +5,7 @@
 
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/progress.h>
+#include <lodestone/lod/deviation.h>
 
 namespace lodestone {
 
@@ -19,11 +20,13 @@ struct AttributeDeviation {
   double maximum = 0;  ///< of the samples
 };
 
-/// Compares the attributes that two meshes share (same name, width) at points spread over the original's faces with
+/// Compares the attributes that two meshes share (same name, width) at points spread evenly over the original with
 /// those at the nearest points of the level's faces of the same material. Joints and weights are left out: they have no
 /// meaning one by one. Deterministic. Cancelled, it ends with what it has seen. Cost: one nearest-point query for each
 /// of about `sample_count` points.
 std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const Mesh& level,
+                                                   std::size_t sample_count = 20'000, const Progress& progress = {});
+std::vector<AttributeDeviation> measure_attributes(const Mesh& original, const MeasuredSurface& level,
                                                    std::size_t sample_count = 20'000, const Progress& progress = {});
 
 }  // namespace lodestone

@@ -57,6 +57,7 @@ class MeasuredSurface {
   MeasuredSurface& operator=(MeasuredSurface&&) noexcept;
 
   const Mesh& mesh() const;
+  const SurfaceIndex& index() const;
 
   struct Impl;  ///< opaque
   const Impl& impl() const { return *impl_; }
