@@ -52,6 +52,10 @@ constexpr double kRoam = 1.25;       // how far out of the original's box, of th
 constexpr double kFineShare = 0.3;
 constexpr double kSoftening = 0.1;
 
+// Vertices that go farther than their optimum for the places the samples have now come sooner to where these go on to.
+// The first step is to the optimum; so are all after one that made things worse.
+constexpr double kOverRelaxation = 1.7;
+
 constexpr double kFarAtFirst = 1;  // of the mean distance: from there on a sample may be on the near side of a fold
 
 constexpr std::size_t kSamplesOfStep = 1024;  // looked up together, between two words about the progress
@@ -70,7 +74,7 @@ constexpr std::array<Effort, kMostEffort> kEfforts = {{{1, 1, 0.9, 8, 0},
                                                        {2, 1, 0.9, 10, 0},
                                                        {4, 3, 0.97, 15, 0},
                                                        {8, 5, 0.98, 20, 5},
-                                                       {24, 8, 0.995, 30, 5},
+                                                       {24, 6, 0.99, 30, 5},
                                                        {48, 12, 0.998, 30, 5},
                                                        {48, 12, 0.999, 60, 4},
                                                        {48, 12, 0.999, 60, 3},
@@ -208,7 +212,7 @@ class Fitting {
   void assemble(SparseSystem& system);
   void add_faces(SparseSystem& system) const;
   void add_lines(SparseSystem& system);
-  void move();
+  void move(double relaxation);
   double forward_error();
   std::vector<Index> faces_of_samples() const;
   void keep_in_box(std::vector<Vec3>& positions) const;
@@ -451,15 +455,18 @@ void Fitting::add_lines(SparseSystem& system) {
   }
 }
 
-void Fitting::move() {
+/// `relaxation`: how far vertices go, of the way to their optimum.
+void Fitting::move(double relaxation) {
   if (!goes_on()) return;
   if (!system_) system_.emplace(level_);
   assemble(*system_);
   if (!goes_on()) return;
   std::vector<Vec3> moved;
   for (const Vec3f& p : level_.positions) moved.emplace_back(p);
+  const std::vector<Vec3> before = moved;
   system_->solve(moved, kSolverSteps);
   if (!goes_on()) return;
+  for (Index v = 0; v < moved.size(); ++v) moved[v] = before[v] + (moved[v] - before[v]) * relaxation;
   keep_in_box(moved);
   std::vector<Vec3f> positions;
   for (const Vec3& p : moved) positions.push_back(to_float(p));
@@ -523,15 +530,21 @@ void Fitting::run() {
   Mesh best_level = level_;
   progress_.reach(kFirstShare);
   const Progress moves = progress_.part(1 - kFirstShare);
+  double relaxation = 1;
+  bool is_smooth = true;  // each move has made things better
   for (int i = 0; i < effort_.moves && !progress_.is_cancelled(); ++i) {
     if (i < effort_.turning && freedom_ == Freedom::All) turn_edges();
-    move();
+    move(relaxation);
     const bool looks_everywhere = effort_.search_every > 0 && (i + 1) % effort_.search_every == 0;
     follow();
     if (looks_everywhere) search(mean_square());
     moves.reach(static_cast<double>(i + 1) / effort_.moves);
     const double now = error();
-    if (!(now < best)) break;
+    const bool is_better = now < best;
+    if (!is_better && relaxation == 1) break;
+    is_smooth = is_smooth && is_better;
+    relaxation = is_smooth ? kOverRelaxation : 1;
+    if (!is_better) continue;
     const bool settled = now > effort_.settled * best;
     best = now;
     best_level = level_;
