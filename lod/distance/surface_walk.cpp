@@ -1,8 +1,8 @@
 // Descends from face to face, as locating a point by walking does in a triangulation (see O. Devillers, S. Pion,
 // M. Teillaud: Walking in a triangulation, 2002). Where the point lies over the inside of a face, which most do, the
 // foot of its perpendicular is the answer unless the surface folds up towards it; elsewhere the walk goes on over the
-// edge that the point lies beyond. Around ridges and corners what falls is the distance, over those faces that share
-// what the nearest point lies on.
+// edge that the point lies beyond, and ends there if it would come back over it. Around corners and in folds what falls
+// is the distance, over those faces that share what the nearest point lies on.
 
 #include "distance/surface_walk.h"
 
@@ -16,7 +16,8 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr int kMostSteps = 32;  // over edges that a point lies beyond, before distances are compared
+constexpr int kMostSteps = 32;          // over edges that a point lies beyond, before distances are compared
+constexpr double kRounding = 1 + 1e-5;  // of squared distances in single precision
 
 }  // namespace
 
@@ -50,8 +51,7 @@ void SurfaceWalk::update(const Mesh& mesh) {
   return lie;
 }
 
-/// Returns a face's slab without what depends on its neighbours. A face without an area has every point beyond its
-/// edges, and nothing beyond these.
+/// Returns a face's slab without what depends on its neighbours.
 SurfaceWalk::Slab SurfaceWalk::slab_of(Index face) const {
   const Triangle& triangle = triangles_[face];
   const Vec3 corners[3] = {Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)};
@@ -60,7 +60,6 @@ SurfaceWalk::Slab SurfaceWalk::slab_of(Index face) const {
   Slab slab{};
   slab.set_origin(triangle.a);
   slab.across.fill(kNoIndex);
-  slab.offset.fill(-1);
   const auto set = [&](std::size_t k, const Vec3& direction, double offset) {
     slab.x[k] = static_cast<float>(direction.x);
     slab.y[k] = static_cast<float>(direction.y);
@@ -120,16 +119,21 @@ SurfaceWalk::Place SurfaceWalk::nearest_from(const Vec3& p, Index face) const {
 /// point lies before it. `face` is where the walk has come to.
 bool SurfaceWalk::walk_over(const Vec3& p, Index& face, Place& place) const {
   float least = std::numeric_limits<float>::infinity();  // no nearer is the first face, squared
-  Index previous = kNoIndex;
+  Index left_by = kNoIndex;                              // the corner of the edge that the face before was left over
   for (int step = 0; step < kMostSteps; ++step) {
     const Slab& slab = slabs_[face];
+    if (!slab.has_area()) return false;
     const Lie lie = Lie::of(p, slab);
     const std::array<float, 4>& d = lie.distance;
     const std::size_t k = d[0] <= d[1] ? (d[0] <= d[2] ? 0 : 2) : (d[1] <= d[2] ? 1 : 2);
     const float squared = d[3] * d[3];
     if (d[k] >= 0) {
-      if (squared > least) return false;
-      if (!(lie.slack[0] >= 0) || !(lie.slack[1] >= 0) || !(lie.slack[2] >= 0)) return false;
+      Index nearer = kNoIndex;
+      if (squared > least || !look_into_folds(p, slab, lie, nearer)) return false;
+      if (nearer != kNoIndex) {
+        face = nearer, left_by = kNoIndex;
+        continue;
+      }
       place.face = face;
       place.on.squared_distance = static_cast<double>(squared);
       for (std::size_t i = 0; i < 3; ++i)
@@ -137,12 +141,51 @@ bool SurfaceWalk::walk_over(const Vec3& p, Index& face, Place& place) const {
       return true;
     }
     if (step == 0) least = squared + d[k] * d[k];
-    const Index next = slab.across[k];
-    if (next == kNoIndex || next == previous) return false;
-    previous = face;
-    face = next;
+    const Index corner = 3 * face + static_cast<Index>(k), other = across_[corner];
+    // At a border, and where both faces at an edge have the point beyond it, it is the edge that is nearest.
+    if (other == corner || other == left_by) return land_on_edge(p, corner, least, place);
+    if (slab.across[k] == kNoIndex) return false;
+    left_by = corner;
+    face = slab.across[k];
   }
   return false;
+}
+
+/// Looks at the faces beyond a face that the point lies over which fold up so far that it lies before them, too. False
+/// where they do not tell what is nearest; `nearer` is the nearest of those that are nearer, and that it lies over.
+bool SurfaceWalk::look_into_folds(const Vec3& p, const Slab& slab, const Lie& lie, Index& nearer) const {
+  float least = lie.distance[3] * lie.distance[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (lie.slack[k] >= 0) continue;
+    if (slab.across[k] == kNoIndex || !slabs_[slab.across[k]].has_area()) return false;
+    const std::array<float, 4> d = Lie::of(p, slabs_[slab.across[k]]).distance;
+    const float beyond = std::min({d[0], d[1], d[2], 0.0F});
+    const float at_least = d[3] * d[3] + beyond * beyond;
+    if (at_least >= least) continue;
+    if (beyond < 0) return false;
+    least = at_least;
+    nearer = slab.across[k];
+  }
+  return true;
+}
+
+/// Takes the nearest point of the edge that leaves a corner, which the point lies beyond; false where that is an end of
+/// the edge, or farther away than the first face may be.
+bool SurfaceWalk::land_on_edge(const Vec3& p, Index corner, float least, Place& place) const {
+  const Index face = face_of_corner(corner), k = corner % 3, next = next_corner(corner) % 3;
+  const Triangle& triangle = triangles_[face];
+  const std::array<Vec3, 3> corners = {Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)};
+  const Vec3 from = corners[k], edge = corners[next] - from;
+  const double along = dot(p - from, edge), whole = squared_length(edge);
+  if (!(along > 0) || !(along < whole)) return false;
+  const double t = along / whole, squared = squared_length(p - (from + edge * t));
+  if (squared > static_cast<double>(least) * kRounding) return false;
+  place.face = face;
+  place.on.squared_distance = squared;
+  place.on.weights[k] = 1 - t;
+  place.on.weights[next] = t;
+  place.on.weights[3 - k - next] = 0;
+  return true;
 }
 
 SurfaceWalk::Candidate SurfaceWalk::look_at(const Vec3& p, Index face) const {

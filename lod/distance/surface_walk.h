@@ -48,6 +48,8 @@ class SurfaceWalk {
     std::array<float, 4> inverse_height;  // Of the face, from each edge to the corner on the other side.
     std::array<Index, 3> across;          // The face beyond each edge, where there is just one.
 
+    bool has_area() const { return inverse_height[0] > 0; }  // Without, it says nothing.
+
     /// Where points are counted from, the first corner: it lies in the lanes of the plane which say nothing.
     Vec3f origin() const { return {rise[3], run[3], inverse_height[3]}; }
     void set_origin(const Vec3f& p) { rise[3] = p.x, run[3] = p.y, inverse_height[3] = p.z; }
@@ -71,6 +73,8 @@ class SurfaceWalk {
   Slab slab_of(Index face) const;
   void add_neighbours(Index face);
   bool walk_over(const Vec3& p, Index& face, Place& place) const;
+  bool look_into_folds(const Vec3& p, const Slab& slab, const Lie& lie, Index& nearer) const;
+  bool land_on_edge(const Vec3& p, Index corner, float least, Place& place) const;
   Candidate look_at(const Vec3& p, Index face) const;
   void try_face(const Vec3& p, Index face, Candidate& best) const;
   void try_across(const Vec3& p, Index corner, Candidate& best) const;
