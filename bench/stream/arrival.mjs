@@ -38,8 +38,11 @@ const files = [
 for (const [, name, settings] of files)
   execFileSync(options.program, ['build', plain, '-o', join(folder, name), '-q', ...settings], { stdio: ['ignore', 'ignore', 'ignore'] });
 if (options.gltfpack) {
-  execFileSync('node', [options.gltfpack, '-i', plain, '-o', join(folder, 'gltfpack.glb'), '-cc'], { stdio: ['ignore', 'ignore', 'inherit'] });
-  files.push(['whole, gltfpack -cc', 'gltfpack.glb', [], 'meshopt', false]);
+  // By itself it drops what no material uses, which is all but positions and normals once images are gone.
+  for (const [name, settings] of [['gltfpack.glb', ['-cc']], ['gltfpack-kv.glb', ['-cc', '-kv']]]) {
+    execFileSync('node', [options.gltfpack, '-i', plain, '-o', join(folder, name), ...settings], { stdio: ['ignore', 'ignore', 'inherit'] });
+    files.push([`whole, gltfpack ${settings.join(' ')}`, name, settings, 'meshopt', false]);
+  }
 }
 
 /** Of a .gltf all that it names, too. */
