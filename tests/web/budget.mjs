@@ -136,6 +136,14 @@ const checksOfModels = {
     }
     return 'one or two at once';
   },
+  'a chunk that leads to a coarser level than the one before it is passed': () => {
+    const budget = new DetailBudget({ pixelError: 0, atOnce: 1 });
+    const seen = crowd(budget, LIST.slice(0, 3));
+    for (const { model } of seen) model.chunks[2].deviation = 1.5 * model.chunks[1].deviation;
+    settle(budget, seen);
+    assert.ok(seen.every(({ model }) => model.chunksReady === model.chunks.length), seen.map(({ model }) => model.chunksReady).join(' '));
+    return 'all of all';
+  },
   'bytes are held': () => {
     const budget = new DetailBudget({ bytes: 600_000, pixelError: 0 });
     const seen = crowd(budget, LIST);

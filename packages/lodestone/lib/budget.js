@@ -61,7 +61,7 @@ class Entry {
     this.mesh = mesh;
     this.pixels = 0; // a unit of the mesh covers
     this.places = 1; // at which it is drawn
-    this.next = undefined; // what has been seen since the last update, { pixels, places }
+    this.view = undefined; // what has been seen since the last update, { pixels, places }
     this.seen = -Infinity; // when
     this.wanted = undefined;
     this.curve = undefined;
@@ -70,20 +70,20 @@ class Entry {
   }
 
   see(pixels, places) {
-    this.next ??= { pixels: 0, places: 0 };
-    this.next.pixels = Math.max(this.next.pixels, pixels);
-    this.next.places += places;
+    this.view ??= { pixels: 0, places: 0 };
+    this.view.pixels = Math.max(this.view.pixels, pixels);
+    this.view.places += places;
   }
 
   /** What was seen since the last time counts; what was not for a while is far away. */
   refresh(now) {
-    if (this.next) {
-      Object.assign(this, this.next);
+    if (this.view) {
+      Object.assign(this, this.view);
       this.seen = now;
     } else if (now - this.seen > PATIENCE) {
       this.pixels = 0;
     }
-    this.next = undefined;
+    this.view = undefined;
     const { chunks } = this.mesh;
     if (chunks) this.curve ??= new Curve(chunks);
     this.#learn(now);
@@ -105,8 +105,14 @@ class Entry {
     return Math.min(shown?.deviation ?? Infinity, chunks && chunksReady > 0 ? chunks[chunksReady - 1].deviation : Infinity);
   }
 
-  get nextChunk() {
-    return this.mesh.chunks?.[this.mesh.chunksReady];
+  /**
+   * What brings it nearer to the whole: the next chunk that leads to a finer level than has arrived, as not every chunk does, with
+   * the bytes up to its end; undefined where nothing is known of chunks, or none is left.
+   */
+  get next() {
+    const { chunks, chunksReady, bytes } = this.mesh;
+    const chunk = chunks?.find(({ deviation }, i) => i >= chunksReady && deviation < this.arrived);
+    return chunk && { deviation: chunk.deviation, bytes: chunk.byteEnd - (bytes ?? 0) };
   }
 
   facesNow() {
@@ -207,18 +213,18 @@ export class DetailBudget {
   #chooseNext() {
     const waiting = [];
     for (const entry of this.#entries.values())
-      if (entry.pixels * entry.arrived > this.#error && !(entry.mesh.chunks && !entry.nextChunk)) waiting.push(entry);
+      if (entry.pixels * entry.arrived > this.#error && !(entry.mesh.chunks && !entry.next)) waiting.push(entry);
     waiting.sort((a, b) => b.pixels * b.arrived - a.pixels * a.arrived);
     const allowed = new Map();
     let bytes = this.fetched;
     for (const entry of waiting) {
       if (allowed.size === this.atOnce) break;
-      const chunk = entry.nextChunk;
-      const more = chunk ? chunk.byteEnd - chunk.byteBegin : 0;
+      const { next } = entry;
+      const more = next?.bytes ?? 0;
       if (bytes + more > this.bytes) continue;
       bytes += more;
       // Before it is opened nothing is known of its chunks: its first are fetched.
-      allowed.set(entry, chunk ? chunk.deviation : entry.arrived / STEP ** 2);
+      allowed.set(entry, next?.deviation ?? entry.arrived / STEP ** 2);
     }
     return allowed;
   }
