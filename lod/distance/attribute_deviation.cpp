@@ -16,14 +16,13 @@
 #include <lodestone/lod/deviation.h>
 
 #include "distance/coincident_faces.h"
+#include "distance/even_steps.h"
 #include "distance/triangle.h"
 
 namespace lodestone {
 namespace {
 
 using namespace detail;
-
-constexpr std::size_t kSamplesOfStep = 1024;  // looked up together, between two words about the progress
 
 /// An attribute that both meshes have.
 struct Shared {
@@ -107,16 +106,14 @@ void find_differences(const std::vector<Shared>& shared, const Mesh& original, c
 
 /// Points at equal steps of the area, by the material of their faces. A surface without area has none.
 std::map<Index, std::vector<Sample>> spread_samples(const Mesh& mesh, std::size_t count) {
-  std::vector<double> until;
-  double area = 0;
-  for (Index f = 0; f < mesh.face_count(); ++f) until.push_back(area += length(area_vector(mesh, f)));
   std::map<Index, std::vector<Sample>> samples;
-  Index face = 0;
-  for (std::size_t k = 0; k < count && area > 0; ++k) {
-    const double place = (static_cast<double>(k) + 0.5) / static_cast<double>(count) * area;
-    while (face + 1 < mesh.face_count() && until[face] < place) ++face;
+  std::vector<double> until;
+  for (Index f = 0; f < mesh.face_count(); ++f) until.push_back(length(area_vector(mesh, f)));
+  if (!(add_up(until) > 0)) return samples;
+  step_through(until, count, [&](std::size_t element, double, std::size_t k) {
+    const auto face = static_cast<Index>(element);
     samples[mesh.material_of(face)].push_back({point_on_face(mesh, face, k), face});
-  }
+  });
   return samples;
 }
 
@@ -135,7 +132,10 @@ class Comparison {
       for (const Sample& sample : together) points.push_back(sample.position);
       hits.assign(points.size(), {0, {}, kNoIndex, 0});
       part.surface->nearest(points, hits);
-      for (std::size_t i = 0; i < hits.size() && steps.next(); ++i) add(together[i], hits[i], part);
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (!steps.next()) return;
+        add(together[i], hits[i], part);
+      }
     }
   }
 

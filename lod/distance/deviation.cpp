@@ -23,6 +23,7 @@
 #include <lodestone/core/detail/edges.h>
 
 #include "distance/coincident_faces.h"
+#include "distance/even_steps.h"
 #include "distance/morton_curve.h"
 #include "distance/supremum.h"
 #include "distance/triangle.h"
@@ -30,13 +31,16 @@
 namespace lodestone {
 namespace {
 
+using detail::add_up;
 using detail::CoincidentFaces;
 using detail::Edge;
 using detail::for_each_edge;
 using detail::Goal;
 using detail::HalfEdge;
+using detail::kSamplesOfStep;
 using detail::PatchBound;
 using detail::sorted_edges;
+using detail::step_through;
 using detail::SupremumSearch;
 using detail::SurfaceBounds;
 using detail::TargetSurface;
@@ -44,35 +48,10 @@ using detail::TargetSurface;
 constexpr double kMetrosSamplesPerFace = 10;  // Of the larger mesh: Metro's default.
 constexpr double kLeastSamples = 100'000;     // Metro's default would leave small meshes without any in their faces.
 constexpr double kLeastFaceShare = 0.125;
-constexpr std::size_t kSamplesOfStep = 1024;  // Looked up together, between two words about the progress.
-constexpr double kMeansShare = 0.4;           // Of the work, each way; the maximum takes the rest.
+constexpr double kMeansShare = 0.4;  // Of the work, each way; the maximum takes the rest.
 constexpr double kLeastWidth = 1.2;  // Of an edge's faces, in steps; an edge of narrower ones gets fewer samples.
 
 double area_of(const Mesh& mesh, Index face) { return 0.5 * length(area_vector(mesh, face)); }
-
-/// Turns the elements' sizes into running sums; sizes that are all 0 count as 1. Returns the whole size, which may be
-/// 0.
-double add_up(std::vector<double>& sizes) {
-  double whole = 0;
-  for (double& size : sizes) size = whole += size;
-  if (whole > 0) return whole;
-  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = static_cast<double>(i + 1);
-  return whole;
-}
-
-/// Calls `visit(element, share, k)` for k = 0 … count − 1: the places at equal steps of the elements' sizes, whose
-/// running sums are `until`. `share` is how much of the element lies before the place.
-template <class Visit>
-void step_through(const std::vector<double>& until, std::size_t count, const Visit& visit) {
-  std::size_t element = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double place = (static_cast<double>(k) + 0.5) / static_cast<double>(count) * until.back();
-    while (element + 1 < until.size() && until[element] < place) ++element;
-    const double begin = element > 0 ? until[element - 1] : 0;
-    const double size = until[element] - begin;
-    visit(element, size > 0 ? std::clamp((place - begin) / size, 0.0, 1.0) : 0.5, k);
-  }
-}
 
 }  // namespace
 
