@@ -17,8 +17,9 @@ import '@babylonjs/core/Animations/animatable.js';
 import '@babylonjs/loaders/glTF/2.0/index.js';
 import { DetailBudget } from 'lodestone/budget';
 import { refinementOf, registerLodestone } from 'lodestone/babylon';
+import { sumOfPositions, watchFrames } from './frames.js';
+import { KeptPicture } from './kept_picture.js';
 import { settle } from './settle.js';
-import { holesIn, similarity } from './ssim.js';
 
 const SIZE = 512;
 
@@ -129,8 +130,6 @@ window.drawFrame = () => {
   };
 };
 
-let kept;
-
 /** The picture, with where it is none of the background. */
 async function picture() {
   scene.render();
@@ -140,35 +139,16 @@ async function picture() {
   return { rgba: new Uint8Array(rgba.buffer.slice(0)), covered };
 }
 
-/** Keeps the picture for comparison; returns how many pixels are covered. */
-window.keepPicture = async () => {
-  kept = await picture();
-  return kept.covered.reduce((sum, one) => sum + one, 0);
-};
-window.likeKept = async () => similarity(kept, await picture(), SIZE, SIZE);
+const kept = new KeptPicture(picture, SIZE, SIZE);
+window.keepPicture = () => kept.keep();
+window.likeKept = () => kept.likeness();
+window.holes = () => kept.holes();
 
-/** How many pixels show the background where the picture that is kept does not, nor around there. */
-window.holes = async () => holesIn(kept, await picture(), SIZE, SIZE);
-
-/** A number that changes as vertices slide. */
-function sumOfPositions() {
-  let sum = 0;
-  for (const mesh of loaded.meshes)
-    mesh.geometry?.getVerticesData('position').forEach((number) => {
-      sum += Math.abs(number);
-    });
-  return sum;
-}
+const positions = () => loaded.meshes.filter(({ geometry }) => geometry).map(({ geometry }) => geometry.getVerticesData('position'));
 
 /** Draws frames for so long; returns of each how many triangles it had, and a number that changes as vertices slide. */
-window.frames = async (milliseconds) => {
-  const frames = [];
-  for (const end = performance.now() + milliseconds; performance.now() < end; ) {
-    frames.push({ drawn: window.drawFrame().drawn, sum: sumOfPositions() });
-    await new Promise((resolve) => setTimeout(resolve, 5));
-  }
-  return frames;
-};
+window.frames = (milliseconds) =>
+  watchFrames(() => ({ drawn: window.drawFrame().drawn, sum: sumOfPositions(positions()) }), milliseconds);
 
 /** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
 window.hit = () => {

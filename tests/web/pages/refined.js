@@ -2,9 +2,10 @@
 import * as THREE from 'three';
 import { DetailBudget } from 'lodestone/budget';
 import { LodestonePlugin } from 'lodestone/gltf';
+import { sumOfPositions, watchFrames } from './frames.js';
+import { KeptPicture } from './kept_picture.js';
 import { makeLoader } from './scene.js';
 import { settle } from './settle.js';
-import { holesIn, similarity } from './ssim.js';
 
 const SIZE = 512;
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
@@ -112,8 +113,6 @@ window.finish = async () => {
   return window.settle(10);
 };
 
-let kept;
-
 /** The picture, with where it is none of the background. */
 function picture() {
   const context = renderer.getContext();
@@ -125,34 +124,20 @@ function picture() {
   return { rgba, covered };
 }
 
-/** Keeps the picture for comparison; returns how many pixels are covered. */
-window.keepPicture = () => {
-  kept = picture();
-  return kept.covered.reduce((sum, one) => sum + one, 0);
-};
-window.likeKept = () => similarity(kept, picture(), SIZE, SIZE);
+const kept = new KeptPicture(picture, SIZE, SIZE);
+window.keepPicture = () => kept.keep();
+window.likeKept = () => kept.likeness();
+window.holes = () => kept.holes();
 
-/** How many pixels show the background where the picture that is kept does not, nor around there. */
-window.holes = () => holesIn(kept, picture(), SIZE, SIZE);
-
-/** A number that changes as vertices slide. */
-function sumOfPositions() {
-  let sum = 0;
-  gltf.scene.traverse(({ geometry }) => geometry?.attributes.position.array.forEach((number) => {
-    sum += Math.abs(number);
-  }));
-  return sum;
+function positions() {
+  const arrays = [];
+  gltf.scene.traverse(({ geometry }) => geometry && arrays.push(geometry.attributes.position.array));
+  return arrays;
 }
 
 /** Draws frames for so long; returns of each how many triangles it had, and a number that changes as vertices slide. */
-window.frames = async (milliseconds) => {
-  const frames = [];
-  for (const end = performance.now() + milliseconds; performance.now() < end; ) {
-    frames.push({ drawn: window.drawFrame().drawn, sum: sumOfPositions() });
-    await new Promise((resolve) => setTimeout(resolve, 5));
-  }
-  return frames;
-};
+window.frames = (milliseconds) =>
+  watchFrames(() => ({ drawn: window.drawFrame().drawn, sum: sumOfPositions(positions()) }), milliseconds);
 
 /** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
 window.hit = () => {

@@ -1,6 +1,7 @@
 // Draws a stream while it arrives, by lodestone's object for three.js.
 import * as THREE from 'three';
 import { LodestoneMesh } from 'lodestone/three';
+import { sumOfPositions, watchFrames } from './frames.js';
 
 const SIZE = 640;
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
@@ -76,16 +77,11 @@ window.settle = async (whole = false) => {
 };
 
 /** Draws frames for so long; returns of each the level, how many faces were drawn, and a number that changes as vertices slide. */
-window.frames = async (milliseconds) => {
-  const frames = [];
-  for (const end = performance.now() + milliseconds; performance.now() < end; ) {
+window.frames = (milliseconds) =>
+  watchFrames(() => {
     const { position, faceCount, drawn } = window.drawFrame();
-    const { array } = mesh.children[0].geometry.attributes.position;
-    frames.push({ position, faceCount, drawn, sum: array.reduce((sum, number) => sum + Math.abs(number), 0) });
-    await new Promise((resolve) => setTimeout(resolve, 5));
-  }
-  return frames;
-};
+    return { position, faceCount, drawn, sum: sumOfPositions([mesh.children[0].geometry.attributes.position.array]) };
+  }, milliseconds);
 
 window.watchTasks = () => {
   worst = 0;
