@@ -116,7 +116,8 @@ SurfaceWalk::Place SurfaceWalk::nearest_from(const Vec3& p, Index face) const {
 
 /// Goes on over edges that the point lies beyond. True where it comes to a face that the point lies over, no farther
 /// away than the first one, and no neighbour of that can have a nearer point: for that it must fold up so far that the
-/// point lies before it. `face` is where the walk has come to.
+/// point lies before it. True, too, where it comes to an edge with nothing beyond, or one that it would come back over,
+/// and lands on it. `face` is where the walk has come to.
 bool SurfaceWalk::walk_over(const Vec3& p, Index& face, Place& place) const {
   float least = std::numeric_limits<float>::infinity();  // no nearer is the first face, squared
   Index left_by = kNoIndex;                              // the corner of the edge that the face before was left over

@@ -463,10 +463,12 @@ void Fitting::move(double relaxation) {
   if (!goes_on()) return;
   std::vector<Vec3> moved;
   for (const Vec3f& p : level_.positions) moved.emplace_back(p);
-  const std::vector<Vec3> before = moved;
   system_->solve(moved, kSolverSteps);
   if (!goes_on()) return;
-  for (Index v = 0; v < moved.size(); ++v) moved[v] = before[v] + (moved[v] - before[v]) * relaxation;
+  for (Index v = 0; v < moved.size(); ++v) {
+    const Vec3 before(level_.positions[v]);
+    moved[v] = before + (moved[v] - before) * relaxation;
+  }
   keep_in_box(moved);
   std::vector<Vec3f> positions;
   for (const Vec3& p : moved) positions.push_back(to_float(p));
@@ -530,20 +532,19 @@ void Fitting::run() {
   Mesh best_level = level_;
   progress_.reach(kFirstShare);
   const Progress moves = progress_.part(1 - kFirstShare);
-  double relaxation = 1;
   bool is_smooth = true;  // each move has made things better
   for (int i = 0; i < effort_.moves && !progress_.is_cancelled(); ++i) {
     if (i < effort_.turning && freedom_ == Freedom::All) turn_edges();
-    move(relaxation);
+    const bool goes_beyond = i > 0 && is_smooth;
+    move(goes_beyond ? kOverRelaxation : 1);
     const bool looks_everywhere = effort_.search_every > 0 && (i + 1) % effort_.search_every == 0;
     follow();
     if (looks_everywhere) search(mean_square());
     moves.reach(static_cast<double>(i + 1) / effort_.moves);
     const double now = error();
     const bool is_better = now < best;
-    if (!is_better && relaxation == 1) break;
+    if (!is_better && !goes_beyond) break;
     is_smooth = is_smooth && is_better;
-    relaxation = is_smooth ? kOverRelaxation : 1;
     if (!is_better) continue;
     const bool settled = now > effort_.settled * best;
     best = now;
