@@ -43,6 +43,9 @@ inline void append_bytes(std::vector<std::byte>& out, std::span<const std::byte>
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
+/// Returns where the next multiple of 4 is: what glTF aligns views and elements to.
+constexpr std::size_t padded_to_four(std::size_t size) { return (size + 3) / 4 * 4; }
+
 /// Appends a number seven bits a byte, the lowest first; all bytes but the last have the highest bit.
 inline void append_varint(std::vector<std::byte>& out, std::uint64_t value) {
   for (; value >= 0x80; value >>= 7) out.push_back(static_cast<std::byte>((value & 0x7f) | 0x80));

@@ -95,7 +95,7 @@ std::size_t GlbBuilder::add_packed_view(const MeshoptView& packed, ViewTarget ta
   if (target == ViewTarget::Vertices) view["byteStride"] = packed.stride;
   if (target != ViewTarget::None) view["target"] = static_cast<int>(target);
   view["extensions"][kMeshopt] = std::move(extension);
-  unpacked_bytes_ += (packed.unpacked_bytes() + 3) / 4 * 4;
+  unpacked_bytes_ += padded_to_four(packed.unpacked_bytes());
   require_extension(kMeshopt);
   return add("bufferViews", std::move(view));
 }

@@ -42,7 +42,7 @@ Result<GltfContainer> split_glb(std::span<const std::byte> bytes) {
     return fail(ErrorCode::Malformed, "glb: the first chunk is not JSON", kGlbHeaderBytes);
   GltfContainer container{as_text(json.bytes), {}};
   // Chunks begin on multiples of 4; some writers do not count the padding.
-  const std::size_t next = (kGlbHeaderBytes + kChunkHeaderBytes + json.bytes.size() + 3) / 4 * 4;
+  const std::size_t next = padded_to_four(kGlbHeaderBytes + kChunkHeaderBytes + json.bytes.size());
   if (next >= length) return container;
   LODESTONE_TRY(const Chunk second, read_chunk(bytes.first(length), next));
   if (second.type == kGlbBinaryChunk) container.binary = second.bytes;

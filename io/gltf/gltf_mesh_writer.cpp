@@ -96,7 +96,7 @@ std::size_t add_positions(GlbBuilder& builder, const Mesh& mesh) {
 }
 
 std::size_t add_attribute(GlbBuilder& builder, const Attribute& attribute) {
-  const std::size_t size = attribute.element_bytes(), stride = (size + 3) / 4 * 4;
+  const std::size_t size = attribute.element_bytes(), stride = padded_to_four(size);
   const std::size_t view = builder.add_view(with_stride(attribute.data, size, stride), ViewTarget::Vertices, stride);
   Json accessor = {{"bufferView", view},
                    {"componentType", static_cast<int>(attribute.type)},

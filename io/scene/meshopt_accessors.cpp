@@ -98,7 +98,8 @@ struct PackedForm {
 };
 
 PackedForm form_of(const Attribute& attribute, const QuantizationGrid& grid) {
-  const std::size_t size = attribute.element_bytes(), stride = (size + 3) / 4 * 4, count = attribute.data.size() / size;
+  const std::size_t size = attribute.element_bytes(), stride = padded_to_four(size),
+                    count = attribute.data.size() / size;
   const AccessorData type{attribute.type, attribute.component_count, attribute.normalized, count, {}};
   if (!has_grid(attribute, grid)) return {with_stride(attribute.data, size, stride), stride, MeshoptFilter::None, type};
   const std::span<const float> values = as_floats(attribute.data);

@@ -338,7 +338,7 @@ Result<WrittenLevel> write_level(GlbBuilder& builder, const Json& source_mesh, c
                                  const LevelGeometry& level, const QuantizationGrids& grids,
                                  const EncodedLevel& encoded, const AssetOptions& options) {
   WrittenLevel written;
-  const std::uint64_t begin = (builder.binary_bytes() + 3) / 4 * 4;
+  const std::uint64_t begin = padded_to_four(builder.binary_bytes());
   GeometryWriter writer(builder, source, level, grids, options, written);
   const std::map<Index, PrimitiveGeometry> geometry = writer.write(encoded);
   if (options.keep_decoded) {

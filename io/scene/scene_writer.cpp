@@ -15,6 +15,7 @@
 #include <lodestone/io/scene.h>
 #include <lodestone/io/screen_coverage.h>
 
+#include "base/bytes.h"
 #include "gltf/glb_builder.h"
 #include "scene/draco_levels.h"
 #include "scene/meshopt_accessors.h"
@@ -147,11 +148,11 @@ class SceneWriter {
 
   Result<EncodedAsset> finish() {
     EncodedAsset asset{{}, std::move(beside_), std::move(layout_)};
-    const std::uint64_t binary_bytes = (builder_.binary_bytes() + 3) / 4 * 4;
+    const std::uint64_t binary_bytes = padded_to_four(builder_.binary_bytes());
     std::uint64_t document_bytes = 0;
     if (options_.gltf_name.empty()) {
       LODESTONE_TRY(asset.glb, builder_.finish());
-      document_bytes = asset.glb.size() - std::min<std::uint64_t>(binary_bytes, asset.glb.size());
+      document_bytes = asset.glb.size() - binary_bytes;
     } else {
       const std::string data = options_.gltf_name + ".bin";
       GlbBuilder::SeparateFiles files = builder_.finish_separate(uri_of(data));
@@ -227,7 +228,7 @@ class SceneWriter {
   }
 
   Result<void> add_level(std::size_t level) {
-    const std::uint64_t begin = (builder_.binary_bytes() + 3) / 4 * 4;
+    const std::uint64_t begin = padded_to_four(builder_.binary_bytes());
     AssetLayout::Level& layout = layout_.levels[level];
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
       WrittenLevel& written = written_[mesh][level];

@@ -34,7 +34,7 @@ class GeometryAdder {
   }
 
   int add_attribute(const Attribute& attribute) {
-    const std::size_t size = attribute.element_bytes(), stride = (size + 3) / 4 * 4;
+    const std::size_t size = attribute.element_bytes(), stride = padded_to_four(size);
     tinygltf::Accessor accessor = accessor_of(attribute.type, attribute.component_count, attribute.data.size() / size);
     accessor.bufferView = add_view(with_stride(attribute.data, size, stride), TINYGLTF_TARGET_ARRAY_BUFFER, stride);
     accessor.normalized = attribute.normalized && attribute.type != ComponentType::Float32;
@@ -70,7 +70,7 @@ class GeometryAdder {
 
   int add_view(std::span<const std::byte> bytes, int target, std::size_t stride) {
     std::vector<unsigned char>& data = model_.buffers[0].data;
-    data.resize((data.size() + 3) / 4 * 4);
+    data.resize(padded_to_four(data.size()));
     tinygltf::BufferView view;
     view.buffer = 0;
     view.byteOffset = data.size();
