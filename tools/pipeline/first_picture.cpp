@@ -13,10 +13,10 @@ namespace lodestone::detail {
 namespace {
 
 constexpr std::uint64_t kLeastLimit = 4096;
-constexpr std::uint64_t kFilesShare = 100;  // a hundredth of the file
-constexpr double kLeastShare = 0.125;       // of the faces that were planned: with fewer, it had better be late
-constexpr double kMargin = 0.97;            // bytes do not fall quite as faces do
-constexpr std::uint64_t kNumberBytes = 80;  // of a mesh's measured numbers, which are not there yet
+constexpr std::uint64_t kFilesShare = 100;      // a hundredth of the file
+constexpr double kLeastShareOfPlanned = 0.125;  // of the faces that were planned: with fewer, it had better be late
+constexpr double kMargin = 0.97;                // bytes do not fall quite as faces do
+constexpr std::uint64_t kNumberBytes = 80;      // of a mesh's measured numbers, which are not there yet
 
 // Of the records that a first chunk has room for, as its bytes are spread over it: what is tried first, and last.
 constexpr double kFirstShare = 0.8, kLastShare = 0.3;
@@ -85,7 +85,7 @@ Result<bool> fit_first_picture(MeasuredScene& measured, const std::vector<Simpli
     const double room = static_cast<double>(limit) - static_cast<double>(bytes - geometry);
     share *= kMargin * std::min(room / static_cast<double>(geometry), 1.0);
     ShownLevel shown;
-    if (share >= kLeastShare) {
+    if (share >= kLeastShareOfPlanned) {
       LODESTONE_TRY(shown, make_shown(measured, simplified, options, share, fitter, progress));
     }
     if (shown.levels.empty()) break;
