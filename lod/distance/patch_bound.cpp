@@ -13,10 +13,17 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// Twice the signed area of p, q, r.
-template <class P, class Q, class R>
-double area2(const P& p, const Q& q, const R& r) {
-  return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+/// For the line from p to q in the plane, by barycentric coordinates: how each of the triangle's corners lies to it,
+/// above 0 to its left.
+std::array<double, 3> corners_beside(const std::array<double, 4>& p, const std::array<double, 4>& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+/// On which side all corners are: 1 left, −1 right; 0 where some are on each, or all on the line.
+int common_side(const std::array<double, 3>& beside) {
+  const bool left = beside[0] >= 0 && beside[1] >= 0 && beside[2] >= 0;
+  const bool right = beside[0] <= 0 && beside[1] <= 0 && beside[2] <= 0;
+  return static_cast<int>(left) - static_cast<int>(right);
 }
 
 /// The half-edges of a mesh by the vertex they leave.
@@ -68,73 +75,68 @@ std::vector<Index> opposite_corners(const Mesh& mesh) {
 }
 
 PatchBound::PatchBound(const Mesh& surface, std::span<const Index> opposite)
-    : surface_(surface), opposite_(opposite), state_(surface.face_count(), 0) {}
+    : surface_(surface), opposite_(opposite), taken_in_(surface.face_count(), 0) {}
 
 PatchBound::Point PatchBound::Frame::project(const Vec3& p) const {
-  const Vec3 d = p - origin;
-  Point point{dot(d, x_axis), dot(d, y_axis), dot(d, normal), {}, 0};
-  for (std::size_t i = 0; i < 3; ++i) {
-    point.side[i] = edges[i].x_factor * point.x + edges[i].y_factor * point.y + edges[i].constant;
-    point.outside |= static_cast<unsigned>(point.side[i] <= 0) << i;
-  }
+  const Vec3 d = p - centre;
+  Point point;
+  for (std::size_t i = 0; i < 4; ++i)
+    point.seen[i] = d.x * x_factors[i] + d.y * y_factors[i] + d.z * z_factors[i] + constants[i];
+  point.outside = static_cast<unsigned>(point.seen[0] <= 0) | static_cast<unsigned>(point.seen[1] <= 0) << 1 |
+                  static_cast<unsigned>(point.seen[2] <= 0) << 2;
   return point;
 }
 
 /// Sets up the plane of a triangle; false where it has none.
 bool PatchBound::make_frame(const std::array<Vec3, 3>& triangle, double slack, Frame& frame) {
-  const Vec3 centre = (triangle[0] + triangle[1] + triangle[2]) * (1.0 / 3.0);
-  double squared_radius = 0;
-  for (const Vec3& corner : triangle) squared_radius = std::max(squared_radius, squared_length(corner - centre));
-  const double radius = std::sqrt(squared_radius);
-  frame.origin = centre;
-  frame.x_axis = triangle[1] - triangle[0];
-  frame.normal = normalized(cross(frame.x_axis, triangle[2] - triangle[0]));
-  frame.y_axis = cross(frame.normal, frame.x_axis);
-  if (!(squared_length(frame.normal) > 0) || !(radius > slack)) return false;
+  frame.centre = (triangle[0] + triangle[1] + triangle[2]) * (1.0 / 3.0);
+  const std::array<Vec3, 3> corners = {triangle[0] - frame.centre, triangle[1] - frame.centre,
+                                       triangle[2] - frame.centre};
+  const double radius =
+      std::sqrt(std::max({squared_length(corners[0]), squared_length(corners[1]), squared_length(corners[2])}));
+  const Vec3 normal = normalized(cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+  if (!(squared_length(normal) > 0) || !(radius > slack)) return false;
   const double shrink = 1 - slack / radius;
+  const auto set = [&frame](std::size_t i, const Vec3& direction, double constant) {
+    frame.x_factors[i] = direction.x;
+    frame.y_factors[i] = direction.y;
+    frame.z_factors[i] = direction.z;
+    frame.constants[i] = constant;
+  };
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 d = (triangle[i] - centre) * shrink;
-    frame.corners[i] = {dot(d, frame.x_axis), dot(d, frame.y_axis)};
+    const Vec3 inwards = cross(normal, corners[(i + 1) % 3] - corners[i]);
+    set(i, inwards, -dot(corners[i], inwards) * shrink);
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Frame::Corner &p = frame.corners[i], &q = frame.corners[(i + 1) % 3];
-    frame.edges[i] = {p.y - q.y, q.x - p.x, p.x * q.y - q.x * p.y};
-  }
+  set(3, normal, 0);
   return true;
 }
 
-/// Whether a line along an edge of `other` or of the triangle keeps the two apart.
-bool PatchBound::separated(const Frame& frame, const Points& other) {
-  if ((other[0].outside & other[1].outside & other[2].outside) != 0) return true;
-  if (other[0].outside == 0 || other[1].outside == 0 || other[2].outside == 0) return false;
-  return edge_separates(frame, other);
+/// Whether a line along the edge from p to q, or along one of the triangle's, keeps the edge and the triangle apart.
+bool PatchBound::is_apart(const Point& p, const Point& q) {
+  if ((p.outside & q.outside) != 0) return true;
+  return p.outside != 0 && q.outside != 0 && common_side(corners_beside(p.seen, q.seen)) != 0;
 }
 
-bool PatchBound::edge_separates(const Frame& frame, const Points& other) {
+/// The same for a whole face.
+bool PatchBound::is_apart(const Points& face) {
+  if ((face[0].outside & face[1].outside & face[2].outside) != 0) return true;
+  if (face[0].outside == 0 || face[1].outside == 0 || face[2].outside == 0) return false;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Point& p = other[i];
-    const Point& q = other[(i + 1) % 3];
-    if (p.x == q.x && p.y == q.y) continue;  // No line: a border edge comes as a triangle of two points.
-    const double inner = area2(p, q, other[(i + 2) % 3]);
-    const double a = area2(p, q, frame.corners[0]);
-    const double b = area2(p, q, frame.corners[1]);
-    const double c = area2(p, q, frame.corners[2]);
-    if ((inner >= 0 && a <= 0 && b <= 0 && c <= 0) || (inner <= 0 && a >= 0 && b >= 0 && c >= 0)) return true;
+    const std::array<double, 3> beside = corners_beside(face[i].seen, face[(i + 1) % 3].seen);
+    const std::array<double, 4>& apex = face[(i + 2) % 3].seen;
+    const double apex_beside = beside[0] * apex[0] + beside[1] * apex[1] + beside[2] * apex[2];
+    if (const int side = common_side(beside); side != 0 && apex_beside * side <= 0) return true;
   }
   return false;
 }
 
 /// Returns the greatest absolute height of that part of `subject` which lies over the triangle.
 double PatchBound::clipped_height(const Points& subject) {
-  // All that is needed of a point changes evenly along an edge: its height, and then what it sees of the edges.
-  using Corner = std::array<double, 4>;
-  constexpr std::size_t kMost = 9;  // 3, 4, 6, 9 at worst, however they are rounded.
+  using Corner = std::array<double, 4>;  // What is seen of a point changes evenly along an edge.
+  constexpr std::size_t kMost = 9;       // 3, 4, 6, 9 at worst, however they are rounded.
   std::array<std::array<Corner, kMost>, 2> polygons;
   std::size_t size = 3;
-  for (std::size_t j = 0; j < size; ++j) {
-    const Point& p = subject[j];
-    polygons[0][j] = {p.height, p.side[0], p.side[1], p.side[2]};
-  }
+  for (std::size_t j = 0; j < size; ++j) polygons[0][j] = subject[j].seen;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::array<Corner, kMost>& polygon = polygons[i % 2];
     std::array<Corner, kMost>& kept = polygons[(i + 1) % 2];
@@ -142,8 +144,8 @@ double PatchBound::clipped_height(const Points& subject) {
     for (std::size_t j = 0; j < size; ++j) {
       const Corner& p = polygon[j];
       const Corner& q = polygon[j + 1 < size ? j + 1 : 0];
-      const double at_p = p[1 + i];
-      const double at_q = q[1 + i];
+      const double at_p = p[i];
+      const double at_q = q[i];
       if (at_p >= 0) kept[kept_size++] = p;
       if ((at_p >= 0) == (at_q >= 0)) continue;
       const double t = at_p / (at_p - at_q);
@@ -153,18 +155,18 @@ double PatchBound::clipped_height(const Points& subject) {
     size = kept_size;
   }
   double height = 0;
-  for (std::size_t j = 0; j < size; ++j) height = std::max(height, std::abs(polygons[1][j][0]));
+  for (std::size_t j = 0; j < size; ++j) height = std::max(height, std::abs(polygons[1][j][3]));
   return height;
 }
 
-/// How the edge from p to q passes the ray along x from the origin, the triangle's centre: 1 upwards, −1 downwards, 0
-/// not at all.
+/// How the edge from p to q passes a ray from the triangle's centre, where its edges see the same: 1 to the left, −1 to
+/// the right, 0 not at all.
 int PatchBound::crossing(const Point& p, const Point& q) {
-  const bool p_below = p.y <= 0;
-  const bool q_below = q.y <= 0;
-  if (p_below == q_below) return 0;
-  const bool left = p.x * q.y - p.y * q.x > 0;
-  return p_below ? (left ? 1 : 0) : (left ? 0 : -1);
+  const double p_along = p.seen[0] - p.seen[2], p_aside = p.seen[1] - p.seen[2];
+  const double q_along = q.seen[0] - q.seen[2], q_aside = q.seen[1] - q.seen[2];
+  if ((p_aside <= 0) == (q_aside <= 0)) return 0;
+  const double left = p_along * q_aside - p_aside * q_along;
+  return p_aside <= 0 ? (left > 0 ? 1 : 0) : (left < 0 ? -1 : 0);
 }
 
 PatchBound::Points PatchBound::project(const Frame& frame, Index face) const {
@@ -172,61 +174,55 @@ PatchBound::Points PatchBound::project(const Frame& frame, Index face) const {
           frame.project(surface_.corner_position(3 * face + 2))};
 }
 
-/// What the face is to the triangle; it joins the patch if it is over or under it, and not too high.
-PatchBound::Standing PatchBound::add_if_over(const Frame& frame, Index face) {
-  return was_tested(face) ? standing(face) : add_tested(frame, face, project(frame, face));
-}
-
-/// The same for the face of the corner `other`, two of whose corners are known: those of its edge.
-PatchBound::Standing PatchBound::add_across(const Frame& frame, Index other, const Point& at_other,
-                                            const Point& after_other) {
-  const Index face = face_of_corner(other);
-  if (was_tested(face)) return standing(face);
-  Points points;
-  points[other % 3] = at_other;
-  points[next_corner(other) % 3] = after_other;
-  points[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
-  return add_tested(frame, face, points);
-}
-
-PatchBound::Standing PatchBound::add_tested(const Frame& frame, Index face, const Points& points) {
-  const Standing standing = judge(frame, points);
-  state_[face] = kStandings * run_ + static_cast<std::uint32_t>(standing);
-  if (standing != Standing::InPatch) return standing;
-  patch_.push_back(face);
-  points_.push_back(points);
-  return standing;
-}
-
-PatchBound::Standing PatchBound::judge(const Frame& frame, const Points& points) {
-  if (separated(frame, points)) return Standing::Apart;
-  double height = std::max({std::abs(points[0].height), std::abs(points[1].height), std::abs(points[2].height)});
-  if (height > limit_) height = clipped_height(points);
-  if (height > limit_) return Standing::TooHigh;
-  height_ = std::max(height_, height);
-  return Standing::InPatch;
-}
-
 /// Starts the patch with a face, or where that is not over the triangle with one of those around it.
 void PatchBound::start_patch(const Frame& frame, Index start) {
-  const auto starts = [&](Index face) { return add_if_over(frame, face) == Standing::InPatch; };
+  const auto starts = [&](Index face) {
+    points_.push_back(project(frame, face));
+    if (!is_apart(points_.back()) && take(face)) return true;
+    points_.pop_back();
+    return false;
+  };
   if (starts(start)) return;
   for (Index corner = 3 * start; corner < 3 * start + 3; ++corner)
     if (any_face_around(opposite_, corner, starts)) return;
 }
 
-/// Grows the patch across the face's edges; where an edge is part of the outline, checks it and adds up the winding.
+/// Grows the patch across those edges of one of its faces that enter the triangle; all others may be part of the
+/// outline, and add to the winding: an edge of two faces of the patch takes away for one what it adds for the other.
 /// False where the outline enters the triangle.
-bool PatchBound::visit_outline(const Frame& frame, Index face, const Points& points, int& winding) {
+bool PatchBound::grow(const Frame& frame, std::size_t number, int& winding) {
   for (Index i = 0; i < 3; ++i) {
-    const Index j = (i + 1) % 3;
-    const Index other = opposite_[3 * face + i];
-    const Standing beyond = other == kNoIndex ? Standing::TooHigh : add_across(frame, other, points[j], points[i]);
-    if (beyond == Standing::InPatch) continue;
-    // A face apart from the triangle has edges that are, too.
-    if (beyond != Standing::Apart && !separated(frame, {points[i], points[j], points[j]})) return false;
-    winding += crossing(points[i], points[j]);
+    const Point &p = points_[number][i], &q = points_[number][next_corner(i)];
+    if (is_apart(p, q))
+      winding += crossing(p, q);
+    else if (!take_across(frame, number, i))
+      return false;
   }
+  return true;
+}
+
+/// Takes the face beyond an edge of one of the patch, if there is one.
+bool PatchBound::take_across(const Frame& frame, std::size_t number, Index edge) {
+  const Index other = opposite_[3 * patch_[number] + edge];
+  if (other == kNoIndex) return false;
+  const Index face = face_of_corner(other);
+  if (taken_in_[face] == run_) return true;
+  Points& points = points_.emplace_back();
+  points[other % 3] = points_[number][next_corner(edge)];
+  points[next_corner(other) % 3] = points_[number][edge];
+  points[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
+  return take(face);
+}
+
+/// Takes a face, whose points are there, into the patch if it is not too high over the triangle.
+bool PatchBound::take(Index face) {
+  const Points& points = points_.back();
+  double height = std::max({std::abs(points[0].height()), std::abs(points[1].height()), std::abs(points[2].height())});
+  if (height > limit_) height = clipped_height(points);
+  if (height > limit_) return false;
+  height_ = std::max(height_, height);
+  taken_in_[face] = run_;
+  patch_.push_back(face);
   return true;
 }
 
@@ -240,10 +236,8 @@ double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, doubl
   height_ = 0;
   start_patch(frame, start);
   int winding = 0;
-  for (std::size_t i = 0; i < patch_.size(); ++i) {
-    const Points points = points_[i];
-    if (!visit_outline(frame, patch_[i], points, winding)) return kNone;
-  }
+  for (std::size_t i = 0; i < patch_.size(); ++i)
+    if (!grow(frame, i, winding)) return kNone;
   return winding != 0 ? height_ + slack : kNone;
 }
 

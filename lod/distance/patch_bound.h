@@ -30,8 +30,8 @@ bool any_face_around(std::span<const Index> opposite, Index corner, const Visit&
 /// Take faces that lie over or under the triangle, seen along its normal, and hang together. If the outline of that
 /// patch, projected into the triangle's plane, winds around the triangle without entering it, then every point of the
 /// triangle has a point of the patch right above or below it (the degree of the projection is not 0), and the greatest
-/// height of the patch over the triangle bounds the distance. Which faces do not matter: those that are too high, walls
-/// beyond an edge, are left out.
+/// height of the patch over the triangle bounds the distance. Which faces do not matter: the patch grows across those
+/// edges alone that enter the triangle, so that walls beyond an edge beside it are left out.
 class PatchBound {
  public:
   /// Pre: both outlive the object; `opposite` are the surface's opposite_corners.
@@ -45,57 +45,42 @@ class PatchBound {
   std::span<const Index> patch() const { return patch_; }
 
  private:
-  /// A point in a triangle's frame: x and y in its plane, in a unit of their own, its height over it, and the
-  /// triangle's edges seen from there: twice the area with each in that unit, positive inside. Bit i: not inside of
-  /// edge i.
+  /// A point, seen by a triangle: from each of its edges, twice the area that the two span in the triangle's plane,
+  /// positive inside; and how high it lies over that plane. The first three are its barycentric coordinates there, but
+  /// for the triangle's area. Bit i: not inside of edge i.
   struct Point {
-    double x, y, height;
-    std::array<double, 3> side;
+    std::array<double, 4> seen;
     unsigned outside;
+
+    double height() const { return seen[3]; }
   };
   using Points = std::array<Point, 3>;
 
-  /// The triangle in its own plane, a little smaller than it is.
+  /// What sees them: the triangle in its own plane, a little smaller than it is.
   struct Frame {
-    struct Corner {
-      double x, y;
-    };
-    /// What grows with the distance from an edge: x_factor·x + y_factor·y + constant.
-    struct Edge {
-      double x_factor, y_factor, constant;
-    };
-    Vec3 origin, x_axis, y_axis, normal;
-    std::array<Corner, 3> corners;
-    std::array<Edge, 3> edges;
+    Vec3 centre;
+    std::array<double, 4> x_factors, y_factors, z_factors, constants;
 
     Point project(const Vec3& p) const;
   };
 
   static bool make_frame(const std::array<Vec3, 3>& triangle, double slack, Frame& frame);
-  static bool separated(const Frame& frame, const Points& other);
-  static bool edge_separates(const Frame& frame, const Points& other);
+  static bool is_apart(const Point& p, const Point& q);
+  static bool is_apart(const Points& face);
   static double clipped_height(const Points& subject);
   static int crossing(const Point& p, const Point& q);
 
-  /// What a face is to the triangle: not over or under it, part of the patch, or too high over it for that.
-  enum class Standing : std::uint32_t { Apart, InPatch, TooHigh };
-  static constexpr std::uint32_t kStandings = 3;
-
   Points project(const Frame& frame, Index face) const;
-  Standing add_if_over(const Frame& frame, Index face);
-  Standing add_across(const Frame& frame, Index other, const Point& at_other, const Point& after_other);
-  Standing add_tested(const Frame& frame, Index face, const Points& points);
-  Standing judge(const Frame& frame, const Points& points);
-  bool was_tested(Index face) const { return state_[face] / kStandings == run_; }
-  Standing standing(Index face) const { return static_cast<Standing>(state_[face] % kStandings); }
   void start_patch(const Frame& frame, Index start);
-  bool visit_outline(const Frame& frame, Index face, const Points& points, int& winding);
+  bool grow(const Frame& frame, std::size_t number, int& winding);
+  bool take_across(const Frame& frame, std::size_t number, Index edge);
+  bool take(Index face);
 
   const Mesh& surface_;
   std::span<const Index> opposite_;
   std::vector<Index> patch_;
-  std::vector<Points> points_;        // Of the patch's faces.
-  std::vector<std::uint32_t> state_;  // Per face: kStandings·run_ + its standing if tested in this run.
+  std::vector<Points> points_;           // Of the patch's faces.
+  std::vector<std::uint32_t> taken_in_;  // By face: the last run that it was in the patch of.
   std::uint32_t run_ = 0;
   double limit_ = 0;   // That heights may have in this run.
   double height_ = 0;  // Of the patch.
