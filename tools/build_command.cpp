@@ -203,6 +203,14 @@ void BuildCommand::add_format_options(CLI::App& app) {
                "compressed levels do")
       ->excludes(none)
       ->group(group);
+  app.add_option(
+         "--stream-coding", stream_coding,
+         "How the stream's bits are coded: small, in the fewest bytes (default), or fast, decoded in two fifths of "
+         "the time at 3 to 6 % more bytes")
+      ->check(CLI::IsMember({"small", "fast"}))
+      ->type_name("NAME")
+      ->excludes(none)
+      ->group(group);
   CLI::Option* compress =
       app.add_option(
              "--compress", compression,

@@ -31,11 +31,14 @@ std::string version_text(const StreamDirectory& directory) {
   return text(directory.version_major, ".", directory.version_minor);
 }
 
+const char* coding_name(CompactCoding coding) { return coding == CompactCoding::Fast ? "fast" : "small"; }
+
 /// How tables call the stream of a mesh.
 std::string title_of(const ListedStream& stream) {
   const bool is_compact = stream.directory.version_major >= kCompactStreamVersion;
+  const std::string coding = stream.parts ? text(", ", coding_name(stream.parts->coding), " coding") : "";
   return text(is_compact ? "compact" : "removal", " stream", stream.mesh.empty() ? "" : " of " + stream.mesh,
-              ", version ", version_text(stream.directory));
+              ", version ", version_text(stream.directory), coding);
 }
 
 struct PartName {
@@ -181,6 +184,8 @@ Result<StreamDirectory> directory_of(std::span<const std::byte> stream) {
   LODESTONE_TRY(const std::vector<CompactChunk> chunks, read_compact_chunks(stream));
   StreamDirectory directory;
   directory.version_major = version;
+  directory.version_minor =
+      static_cast<std::uint16_t>(std::to_integer<unsigned>(stream[10]) | std::to_integer<unsigned>(stream[11]) << 8U);
   directory.total_bytes = stream.size();
   for (const CompactChunk& chunk : chunks)
     directory.chunks.push_back({chunk.byte_offset, chunk.byte_length, chunk.byte_length, 0, chunk.record_begin,
@@ -221,6 +226,7 @@ namespace {
 Json one_json(const ListedStream& stream) {
   Json json = {{"mesh", stream.mesh}};
   json.update(stream_json(stream.directory));
+  json["coding"] = stream.parts ? Json(coding_name(stream.parts->coding)) : Json(nullptr);
   json["parts"] = stream.parts ? Json(part_names(*stream.parts)) : Json(nullptr);
   json["rounds"] = Json::array();
   if (!stream.parts) return json;

@@ -40,6 +40,7 @@ struct Options {
   std::vector<double> rounds = {0, 1.5, 2};
   bool curve = false;
   bool placed = false;
+  bool codings = false;
   std::string picture;
 };
 
@@ -285,6 +286,57 @@ void print_scenes(const std::vector<std::filesystem::path>& paths, double rounds
   }
 }
 
+/// What a coding makes of a scene's meshes: bits, and the CPU seconds of the fastest of five decodings.
+struct Coded {
+  double bits = 0, seconds = 0, vertices = 0, records = 0;
+};
+
+void add_coded(const std::string& name, const Mesh& mesh, const ProgressiveMesh& records,
+               const std::vector<PlacedLevel>& placed, const CompactOptions& options, Coded& sum) {
+  const auto stream = encode_compact(records, options, placed);
+  if (!stream) die(name, stream.error());
+  double best = HUGE_VAL;
+  for (int i = 0; i < 5; ++i) {
+    const std::clock_t start = std::clock();
+    const auto coded = decode_compact(stream->bytes);
+    best = std::min(best, seconds_since(start));
+    if (!coded) die(name, coded.error());
+  }
+  sum.bits += 8 * static_cast<double>(stream->bytes.size());
+  sum.seconds += best;
+  sum.vertices += static_cast<double>(mesh.positions.size());
+  sum.records += static_cast<double>(records.record_count());
+}
+
+/// Prints what small and fast coding take and how fast they are decoded, of streams with placed levels as `build` makes
+/// them, of all meshes of a file with all their attributes.
+void print_codings(const std::vector<std::filesystem::path>& paths, int bits) {
+  std::printf("\nPositions of %d bits, dense_rounds = 1.5, placed levels\n\n", bits);
+  std::printf(
+      "| | bits a vertex, small | fast | more | thousand records a second, small | fast | times |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const auto& path : paths) {
+    Coded small, fast;
+    for (const Mesh& mesh : scene_meshes(path, {})) {
+      SimplifyOptions simplify_options;
+      simplify_options.dense_rounds = 1.5;
+      const auto records = simplify(mesh, simplify_options);
+      if (!records) die(path.string(), records.error());
+      const std::vector<PlacedLevel> placed = place(mesh, records->mesh);
+      CompactOptions options;
+      options.grid_bits = bits;
+      options.grid = grid_of(mesh);
+      add_coded(path.string(), mesh, records->mesh, placed, options, small);
+      options.coding = CompactCoding::Fast;
+      add_coded(path.string(), mesh, records->mesh, placed, options, fast);
+    }
+    const double before = small.bits / small.vertices, after = fast.bits / fast.vertices;
+    const double slow_rate = small.records / small.seconds, fast_rate = fast.records / fast.seconds;
+    std::printf("| %s | %.2f | %.2f | %.2f | %.0f | %.0f | %.2f |\n", path.stem().string().c_str(), before, after,
+                after - before, slow_rate / 1000, fast_rate / 1000, fast_rate / slow_rate);
+  }
+}
+
 int run(int argc, char** argv) {
   Options options;
   if (const char* data = std::getenv("LODESTONE_DATA")) options.data = data;
@@ -297,6 +349,8 @@ int run(int argc, char** argv) {
   app.add_option("--bits", options.bits, "bits of positions")->delimiter(',')->allow_extra_args(false);
   app.add_option("--rounds", options.rounds, "SimplifyOptions::dense_rounds")->delimiter(',')->allow_extra_args(false);
   app.add_flag("--placed", options.placed, "with levels that are placed closer to the full mesh");
+  app.add_flag("--codings", options.codings,
+               "small coding beside fast, of files and scenes with all attributes; no other table");
   app.add_flag("--curve", options.curve, "what each chunk leads to");
   app.add_option(
       "--picture", options.picture,
@@ -317,6 +371,14 @@ int run(int argc, char** argv) {
   std::vector<std::filesystem::path> scenes;
   for (const std::string& file : options.scenes)
     if (!file.empty()) scenes.push_back(path_of(file));
+  if (options.codings) {
+    std::vector<std::filesystem::path> paths;
+    for (const std::string& file : options.files)
+      if (!file.empty()) paths.push_back(path_of(file));
+    paths.insert(paths.end(), scenes.begin(), scenes.end());
+    for (const int bits : options.bits) print_codings(paths, bits);
+    return 0;
+  }
   for (const double rounds : options.rounds) {
     if (!meshes.empty()) print_table(meshes, rounds, options);
     for (const int bits : options.bits)

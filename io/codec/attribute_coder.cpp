@@ -7,6 +7,7 @@
 
 #include "codec/direction_coder.h"
 #include "codec/element_coders.h"
+#include "codec/fast_attributes.h"
 #include "codec/ring.h"
 #include "codec/texture_coder.h"
 #include "codec/weight_coder.h"
@@ -51,7 +52,9 @@ bool ElementCoder::code_same(BitCoder& coder, const ElementPlace& place, std::sp
 
 bool ElementCoder::are_same(Index a, Index b) const {
   const std::span<const std::int32_t> x = numbers(a), y = numbers(b);
-  return std::equal(x.begin(), x.end(), y.begin());
+  for (std::size_t c = 0; c < x.size(); ++c)  // most differ in the first
+    if (x[c] != y[c]) return false;
+  return true;
 }
 
 /// Where wedges of the ring have the same, so may this one: what most of them have.
@@ -85,7 +88,8 @@ bool ElementCoder::code(BitCoder& coder, const ElementPlace& place, std::span<co
   return code_element(coder, place, numbers);
 }
 
-AttributeCoder::AttributeCoder(std::span<const AttributeSpec> specs) : skin_(std::make_unique<SkinSets>()) {
+AttributeCoder::AttributeCoder(std::span<const AttributeSpec> specs, bool is_fast)
+    : is_fast_(is_fast), skin_(std::make_unique<SkinSets>()) {
   for (const AttributeSpec& spec : specs) add_coder(spec);
   find_joints();
   // What others are predicted from comes first.
@@ -101,11 +105,17 @@ void AttributeCoder::add_coder(const AttributeSpec& spec) {
   switch (spec.coding) {
     case AttributeCoding::Directions:
       has_directions_ = true;
-      coders_.push_back(std::make_unique<DirectionCoder>(spec));
+      if (is_fast_)
+        coders_.push_back(std::make_unique<FastDirectionCoder>(spec));
+      else
+        coders_.push_back(std::make_unique<FittedDirectionCoder>(spec));
       if (normal_ == nullptr && spec.component_count == 3) normal_ = coders_.back().get();
       return;
     case AttributeCoding::Texture:
-      coders_.push_back(std::make_unique<TextureCoder>(spec));
+      if (is_fast_)
+        coders_.push_back(std::make_unique<FastTextureCoder>(spec));
+      else
+        coders_.push_back(std::make_unique<FittedTextureCoder>(spec));
       if (texture_ == nullptr) texture_ = coders_.back().get();
       return;
     case AttributeCoding::Weights:
@@ -149,7 +159,7 @@ bool AttributeCoder::code_wedge(BitCoder& coder, const ElementPlace& place,
 
 void AttributeCoder::look(const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions) {
   for (auto& element : coders_) element->resize(wedges.size());
-  if (!has_directions_) return;
+  if (!has_directions_ || is_fast_) return;
   look_at_normals(
       mesh, positions, wedges.size(), [&](Index half) { return mesh.wedge(half); }, normals_);
 }

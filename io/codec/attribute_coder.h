@@ -26,7 +26,7 @@ struct ElementPlace {
   const PatchMesh& mesh;
   const WedgeTable& wedges;
   std::span<const Vec3i> positions;
-  std::span<const Vec3i> normals;  ///< by wedge: unit; of the faces that have it, by area
+  std::span<const Vec3i> normals;  ///< by wedge: unit; of the faces that have it, by area; none of a fast coder
   Index wedge = 0;
   std::span<const Index> faces;           ///< those that have the wedge as their first; in order, if it has a ring
   std::span<const Index> ring;            ///< wedges around it, each once; of both, kMostAround at most
@@ -80,7 +80,7 @@ struct SkinSets;
 /// Codes the attributes of a level's wedges.
 class AttributeCoder {
  public:
-  explicit AttributeCoder(std::span<const AttributeSpec> specs);
+  AttributeCoder(std::span<const AttributeSpec> specs, bool is_fast);
   ~AttributeCoder();
 
   std::size_t count() const { return coders_.size(); }
@@ -109,6 +109,7 @@ class AttributeCoder {
   void add_coder(const AttributeSpec& spec);
   void find_joints();
 
+  bool is_fast_;
   std::unique_ptr<SkinSets> skin_;  // at one address as long as its coders live
   std::vector<std::unique_ptr<ElementCoder>> coders_;
   std::vector<std::size_t> order_;         // in which attributes are coded

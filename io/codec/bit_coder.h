@@ -20,10 +20,15 @@ class WorkListener {
 /// when it writes, and gives it when it reads.
 class BitCoder {
  public:
-  BitCoder() = default;  ///< writes
-  explicit BitCoder(std::span<const std::byte> bytes) : reading_(true), input_(bytes) {
+  /// Writes; `is_fast`: by the models of CompactCoding::Fast.
+  explicit BitCoder(bool is_fast) : is_fast_(is_fast) {}
+  /// Reads.
+  BitCoder(std::span<const std::byte> bytes, bool is_fast) : is_fast_(is_fast), reading_(true), input_(bytes) {
     for (int i = 0; i < 4; ++i) code_ = code_ << 8U | next_byte();
   }
+
+  /// Which models numbers are coded by.
+  bool is_fast() const { return is_fast_; }
 
   /// Codes a bit that is 1 with probability `one` / 65536, `one` in 1 … 65535.
   int code(int bit, std::uint32_t one) {
@@ -39,25 +44,10 @@ class BitCoder {
   }
 
   /// Codes the low `count` bits of a value, both values of each as likely.
-  std::uint32_t code_raw(std::uint32_t value, int count) {
-    std::uint32_t result = 0;
-    while (count-- > 0)
-      result = result << 1U | static_cast<std::uint32_t>(code(static_cast<int>(value >> count & 1U), 32768));
-    return result;
-  }
+  std::uint32_t code_raw(std::uint32_t value, int count);
 
   /// Ends writing with the fewest bytes that a reader, who takes zeros for what is missing, needs.
-  std::vector<std::byte> finish() {
-    for (int kept = 1; kept <= 4; ++kept) {
-      const std::uint32_t mask = kept == 4 ? 0 : 0xFFFFFFFFU >> (8 * kept);
-      const std::uint32_t value = (low_ + mask) & ~mask;
-      if (value < low_ || value > high_) continue;  // wrapped around, or beyond
-      for (int i = 0; i < kept; ++i) output_.push_back(static_cast<std::byte>(value >> (24 - 8 * i)));
-      break;
-    }
-    while (!output_.empty() && output_.back() == std::byte{0}) output_.pop_back();
-    return std::move(output_);
-  }
+  std::vector<std::byte> finish();
 
   /// How many bits have been written or read, as a real number: for reports alone.
   double bits() const {
@@ -71,6 +61,7 @@ class BitCoder {
   bool goes_on() const { return listener_ == nullptr || listener_->step(); }
 
  private:
+  std::uint32_t code_even(std::uint32_t bit);
   void shift() {
     if (!reading_) output_.push_back(static_cast<std::byte>(high_ >> 24U));
     low_ <<= 8U;
@@ -82,6 +73,7 @@ class BitCoder {
     return at < input_.size() ? static_cast<std::uint32_t>(input_[at]) : 0;
   }
 
+  bool is_fast_;
   std::uint32_t low_ = 0;
   std::uint32_t high_ = 0xFFFFFFFFU;
   std::uint32_t code_ = 0;

@@ -32,25 +32,12 @@ constexpr std::array<std::int16_t, 4096> make_odds() {
 }
 constexpr std::array<std::int16_t, 4096> kOdds = make_odds();
 
-constexpr int kWeightBits = 13;  // fractional: weights lie within 4
-constexpr int kSlowest = 30;     // a counter forgets as an average over this many bits does
-constexpr std::array<std::uint32_t, kSlowest + 1> make_rates() {
-  std::array<std::uint32_t, kSlowest + 1> rates{};
-  for (int seen = 0; seen <= kSlowest; ++seen) rates[seen] = static_cast<std::uint32_t>(2 * 65536 / (2 * seen + 3));
-  return rates;
-}
-constexpr std::array<std::uint32_t, kSlowest + 1> kRates = make_rates();  // by how often a counter was seen
+constexpr int kWeightBits = 13;         // fractional: weights lie within 4
+constexpr std::uint16_t kSlowest = 30;  // a counter forgets as an average over this many bits does
 
 constexpr int kWeightsSettle = 60;  // bits after which weights are learnt more slowly
 
 }  // namespace
-
-/// Counts a bit; `flip`: 65535 for 1, 0 for 0.
-inline void BitMixer::Counter::add(std::uint32_t flip) {
-  const std::uint32_t other = one ^ flip;
-  one = static_cast<std::uint16_t>((other - (other * kRates[seen] >> 16U)) ^ flip);
-  seen = static_cast<std::uint16_t>(seen + (seen < kSlowest ? 1 : 0));
-}
 
 BitMixer::BitMixer(std::span<const std::uint32_t> context_counts, std::uint32_t selector_count)
     : input_count_(static_cast<int>(context_counts.size())) {
@@ -71,8 +58,8 @@ BitMixer::BitMixer(std::span<const std::uint32_t> context_counts, std::uint32_t 
 template <std::size_t... I>
 int BitMixer::code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector,
                          std::index_sequence<I...>) {
-  Counter* const counters[] = {&counters_[first_[I] + contexts[I]]...};
-  const Lanes odds(kOdds[counters[I]->one >> 4U]...);
+  BitCounter* const counters[] = {&counters_[first_[I] + contexts[I]]...};
+  const Lanes odds(kOdds[counters[I]->one() >> 4U]...);
   Lanes& weights = weights_[selector];
   const int mixed = std::clamp(dot(odds, weights) >> kWeightBits, -kOddsLimit, kOddsLimit);
   const std::int32_t one = std::clamp(probability(mixed), 16, 65520);
@@ -81,8 +68,8 @@ int BitMixer::code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts
   const bool has_settled = used_[selector] >= kWeightsSettle;
   if (!has_settled) ++used_[selector];
   weights.add_product(odds, static_cast<std::int16_t>(((bit << 16U) - bit - one) >> (has_settled ? 2 : 1)));
-  const std::uint32_t flip = bit != 0 ? 65535 : 0;  // counts zeros as ones
-  (counters[I]->add(flip), ...);
+  const std::uint32_t flip = bit != 0 ? 65535 : 0;
+  (counters[I]->add(flip, kSlowest), ...);
   return bit;
 }
 

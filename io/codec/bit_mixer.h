@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/bit_coder.h"
+#include "codec/bit_counter.h"
 #include "codec/lanes.h"
 
 namespace lodestone::detail {
@@ -28,18 +29,13 @@ class BitMixer {
   int code(BitCoder& coder, int bit, std::span<const std::uint32_t> contexts, std::uint32_t selector);
 
  private:
-  struct Counter {
-    std::uint16_t one = 32768;  // probability of 1, / 65536
-    std::uint16_t seen = 0;
-    void add(std::uint32_t flip);
-  };
   template <std::size_t... I>
   int code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector,
                  std::index_sequence<I...>);
 
   int input_count_;
   std::array<std::uint32_t, kMostInputs> first_{};  // of each input's counters
-  std::vector<Counter> counters_;
+  std::vector<BitCounter> counters_;
   std::vector<Lanes> weights_;       // by selector: 13 fractional bits
   std::vector<std::uint16_t> used_;  // by selector: how often, up to a limit
 };

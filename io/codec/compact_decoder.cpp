@@ -14,8 +14,8 @@ namespace {
 auto broken(const std::string& message) { return fail(ErrorCode::Malformed, message); }
 
 LevelLimits limits_of(const CompactHeader& header) {
-  return {header.grid_bits, static_cast<Index>(header.groups.size()), header.base_vertex_count, header.base_wedge_count,
-          header.base_face_count()};
+  return {header.grid_bits,         header.is_fast(),        static_cast<Index>(header.groups.size()),
+          header.base_vertex_count, header.base_wedge_count, header.base_face_count()};
 }
 
 }  // namespace
@@ -258,7 +258,7 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
 
 Result<void> CompactDecoder::read_chunk(const CompactChunkEntry& chunk, std::span<const std::byte> bytes) {
   if (checksum32(bytes) != chunk.checksum) return broken("checksum is wrong");
-  BitCoder coder(bytes);
+  BitCoder coder(bytes, header_.is_fast());
   bits_at_ = 0;
   if (chunk_count_ == 0) LODESTONE_CHECK(read_base(coder));
   const std::size_t records = mesh_.record_count(), faces = levels_.mesh().face_count();

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kFixedBytes = 16;  // magic, version, header_bytes
 constexpr std::size_t kChecksumBytes = 4;
+enum Flags : unsigned { kLossless = 1, kFast = 2 };
 
 constexpr std::uint64_t zigzag(std::int64_t x) {
   return x < 0 ? 2 * static_cast<std::uint64_t>(-(x + 1)) + 1 : 2 * static_cast<std::uint64_t>(x);
@@ -155,9 +156,10 @@ Result<void> read_attributes(HeaderReader& in, CompactHeader& header) {
 
 Result<void> read_fields(HeaderReader& in, CompactHeader& header) {
   header.grid_bits = in.get<std::uint8_t>();
-  const auto lossless = in.get<std::uint8_t>();
-  if (lossless > 1) return broken(text("lossless is ", int{lossless}), in.at());
-  header.lossless = lossless != 0;
+  const auto flags = in.get<std::uint8_t>();
+  if (flags > (kLossless | kFast)) return broken(text("flags are ", int{flags}), in.at());
+  header.lossless = (flags & kLossless) != 0;
+  header.coding = (flags & kFast) != 0 ? CompactCoding::Fast : CompactCoding::Small;
   for (float* value : {&header.grid.origin.x, &header.grid.origin.y, &header.grid.origin.z, &header.grid.range})
     *value = in.get<float>();
   LODESTONE_CHECK(read_groups(in, header));
@@ -283,10 +285,10 @@ std::vector<std::byte> write_compact_header(const CompactHeader& header) {
   std::vector<std::byte> out;
   for (const unsigned char c : kStreamMagic) out.push_back(std::byte{c});
   append(out, kCompactStreamVersion);
-  append(out, kCompactMinor);
+  append(out, header.is_fast() ? kFastMinor : kSmallMinor);
   append(out, std::uint32_t{0});
   append(out, static_cast<std::uint8_t>(header.grid_bits));
-  append(out, static_cast<std::uint8_t>(header.lossless ? 1 : 0));
+  append(out, static_cast<std::uint8_t>((header.lossless ? kLossless : 0U) | (header.is_fast() ? kFast : 0U)));
   for (const float value : {header.grid.origin.x, header.grid.origin.y, header.grid.origin.z, header.grid.range})
     append(out, value);
   append_varint(out, header.groups.size());

@@ -16,8 +16,9 @@ namespace lodestone::detail {
 
 // The fixed parts of a compact stream; docs/compact-stream.md is the description that counts.
 
-inline constexpr std::uint16_t kCompactMinor = 0;
-inline constexpr int kLeastStepBits = 4;  ///< of coordinates in steps of a stage
+inline constexpr std::uint16_t kSmallMinor = 0;  ///< the minor version of streams of CompactCoding::Small
+inline constexpr std::uint16_t kFastMinor = 1;   ///< the same of CompactCoding::Fast
+inline constexpr int kLeastStepBits = 4;         ///< of coordinates in steps of a stage
 inline constexpr int kLeastAttributeBits = 2;
 inline constexpr int kMostAttributeBits = 24;
 inline constexpr std::uint64_t kMostRecordsPerByte = 8;    ///< of a chunk; the encoder pads it
@@ -66,6 +67,7 @@ struct CompactHeader {
   std::uint32_t header_bytes = 0;  ///< up to the first chunk
   int grid_bits = 0;
   bool lossless = false;  ///< see rest_coder.h
+  CompactCoding coding = CompactCoding::Small;
   CompactGrid grid;
   std::vector<CompactGroup> groups;
   std::vector<AttributeSpec> attributes;
@@ -77,6 +79,7 @@ struct CompactHeader {
 
   /// How far apart the grid's points lie on an axis, mesh units.
   double step() const;
+  bool is_fast() const { return coding == CompactCoding::Fast; }
   /// The position at a point of the grid.
   Vec3f place(const Vec3i& point) const;
   std::uint64_t base_face_count() const;

@@ -52,11 +52,6 @@ Coordinates take_apart(const Ring& ring, std::int64_t normal_variance) {
 
 }  // namespace
 
-bool is_on_grid(const Vec3i& position, int bits) {
-  const std::int64_t end = std::int64_t{1} << bits;
-  return std::min({position.x, position.y, position.z}) >= 0 && std::max({position.x, position.y, position.z}) < end;
-}
-
 Miss miss_of(const Vec3i& residual, const Ring& ring) {
   const std::int64_t off = along(residual, ring.normal);
   const std::int64_t slid = square_root(squared(residual - times(ring.normal, off)));

@@ -16,9 +16,6 @@ struct Miss {
   int tangent = 0;
 };
 
-/// Whether coordinates are whole numbers of so many bits.
-bool is_on_grid(const Vec3i& position, int bits);
-
 /// How wrong a prediction was, over the ring's radius. `residual`: sixteenths of a step.
 Miss miss_of(const Vec3i& residual, const Ring& ring);
 

@@ -25,8 +25,8 @@ double CompactSizes::sum() const {
 
 namespace {
 
-/// Decodes a stream; its rounds are counted where there is a list for them.
-Result<ProgressiveMesh> decode(std::span<const std::byte> bytes, std::vector<CompactRound>* rounds) {
+/// Decodes a stream; its coding and its rounds are noted where there is a place for them.
+Result<ProgressiveMesh> decode(std::span<const std::byte> bytes, CompactParts* parts) {
   const auto in_stream = [](const Error& error, std::uint64_t offset) {
     return fail(error.code, "compact stream: " + error.message, error.byte_offset.value_or(offset));
   };
@@ -35,7 +35,10 @@ Result<ProgressiveMesh> decode(std::span<const std::byte> bytes, std::vector<Com
   std::uint64_t offset = header->header_bytes;
   ProgressiveMesh mesh;
   detail::CompactDecoder decoder(std::move(*header), mesh);
-  if (rounds != nullptr) decoder.count_rounds(*rounds);
+  if (parts != nullptr) {
+    parts->coding = decoder.header().coding;
+    decoder.count_rounds(parts->rounds);
+  }
   for (std::size_t i = 0; !decoder.done(); ++i) {
     const std::uint64_t length = decoder.header().chunks[i].byte_length, room = bytes.size() - offset;
     if (room == 0 && i > 0) return mesh;  // a prefix: the level so far is complete
@@ -65,7 +68,7 @@ Result<ProgressiveMesh> decode_compact(std::span<const std::byte> bytes) { retur
 
 Result<CompactParts> measure_compact(std::span<const std::byte> bytes) {
   CompactParts parts;
-  LODESTONE_TRY(const ProgressiveMesh mesh, decode(bytes, &parts.rounds));
+  LODESTONE_TRY(const ProgressiveMesh mesh, decode(bytes, &parts));
   for (const Attribute& attribute : mesh.attributes) parts.attributes.push_back(attribute.name);
   CompactSizes& sizes = parts.sizes;
   sizes.attributes.assign(mesh.attributes.size(), 0);

@@ -88,32 +88,32 @@ Hints tangents_of(const ElementPlace& place, const Vec3i& around) {
 
 }  // namespace
 
-DirectionCoder::DirectionCoder(const AttributeSpec& spec)
-    : ElementCoder(spec),
+FittedDirectionCoder::FittedDirectionCoder(const AttributeSpec& spec)
+    : DirectionCoder(spec),
       pulls_({0, 0, 0, 0}, 1 << 17),
       size_({0, kHalfWeight, kQuarterWeight, kQuarterWeight}, 1 << 14) {}
 
-Vec3i DirectionCoder::direction(Index wedge) const {
+Vec3i FittedDirectionCoder::direction(Index wedge) const {
   return unit({number(wedge, 0), number(wedge, 1), number(wedge, 2)});
 }
 
-Vec3i DirectionCoder::mean_of_ring(const ElementPlace& place) const {
+Vec3i FittedDirectionCoder::mean_of_ring(const ElementPlace& place) const {
   Vec3i sum;
   for (const Index other : place.ring) sum = sum + direction(other);
   return unit(sum);
 }
 
-void DirectionCoder::note_miss(Index wedge, int miss) {
+void FittedDirectionCoder::note_miss(Index wedge, int miss) {
   if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualDirectionMiss);
   misses_[wedge] = static_cast<std::int16_t>(miss);
 }
 
-void DirectionCoder::pass(const ElementPlace& place) {
+void FittedDirectionCoder::pass(const ElementPlace& place) {
   note_miss(place.wedge,
             place.wedge > 0 && place.wedge <= misses_.size() ? misses_[place.wedge - 1] : kUsualDirectionMiss);
 }
 
-bool DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored,
+void DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored,
                                std::span<std::int32_t> numbers) {
   std::uint32_t positive = 0;
   for (const Index other : place.ring) positive += number(other, 3) > 0 ? 1 : 0;
@@ -121,11 +121,9 @@ bool DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, bool 
   if (place.ring.empty()) context = place.beside != kNoIndex && number(place.beside, 3) > 0 ? 7 : 8;
   context += is_mirrored ? 5 : 0;
   numbers[3] = bits_.code(coder, numbers[3] > 0 ? 1 : 0, std::array<std::uint32_t, 1>{context}, 0) != 0 ? 1 : -1;
-  return true;
 }
 
-/// `log_error`: sixteenths of the logarithm of what is expected, of 2^14.
-bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
+bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, NumberCoder::Guess guess,
                                 std::span<std::int32_t> numbers) {
   const std::int64_t size = spec().highest();
   const std::int64_t sum = std::abs(expected.x) + std::abs(expected.y) + std::abs(expected.z);
@@ -133,21 +131,20 @@ bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_
   for (const int c : {1, 0})
     if (std::abs(expected[c]) > std::abs(expected[top])) top = c;
   const Vec3i point = sum == 0 ? Vec3i{0, 0, 16 * size} : expected * (16 * size) / sum;
-  NumberCoder::Guess guess;
-  guess.scale = std::max<std::int64_t>(1, exp2_16(log_error) * 16 * size / std::max<std::int64_t>(sum, 1 << kUnitBits));
-  guess.hints[0] = NumberCoder::hint(log_error, 0, 14);
-  guess.hints[1] = NumberCoder::hint(static_cast<int>(sum >> (kUnitBits - 4)), 16, 1);
   std::int64_t rest = size;
+  off_ = 0;
   for (int i = 1; i < 3; ++i) {
     const int c = (top + i) % 3;
-    guess.kind = 2 * kind + static_cast<std::uint32_t>(i - 1);
     guess.value = point[c];
     const auto at = static_cast<std::size_t>(c);
     const std::int64_t coded = numbers_.code(coder, numbers[at], guess);
     if (std::abs(coded) > rest) return false;
     rest -= std::abs(coded);
     numbers[at] = static_cast<std::int32_t>(coded);
-    guess.hints[2] = NumberCoder::hint(log_of(16 * coded - guess.value), 0, 12);
+    const std::int64_t off = 16 * coded - guess.value;
+    off_ += std::abs(off);
+    guess.hints[2] = NumberCoder::hint(log_of(off), 0, 12);
+    ++guess.kind;
   }
   const auto at = static_cast<std::size_t>(top);
   const bool as_expected = (numbers[at] >= 0) == (expected[top] >= 0);
@@ -159,16 +156,29 @@ bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, int log_
   return true;
 }
 
-bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
+/// `expected`: a unit vector; `log_error`: sixteenths of the logarithm of what is expected, of 2^14.
+bool FittedDirectionCoder::code_near(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
+                                     std::span<std::int32_t> numbers) {
+  const std::int64_t size = spec().highest();
+  const std::int64_t sum = std::abs(expected.x) + std::abs(expected.y) + std::abs(expected.z);
+  NumberCoder::Guess guess;
+  guess.scale = std::max<std::int64_t>(1, exp2_16(log_error) * 16 * size / std::max<std::int64_t>(sum, 1 << kUnitBits));
+  guess.kind = 2 * kind;
+  guess.hints[0] = NumberCoder::hint(log_error, 0, 14);
+  guess.hints[1] = NumberCoder::hint(static_cast<int>(sum >> (kUnitBits - 4)), 16, 1);
+  return code_point(coder, expected, guess, numbers);
+}
+
+bool FittedDirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
   if (place.ring.empty()) {
-    if (numbers.size() > 3 && !code_sign(coder, place, false, numbers)) return false;
+    if (numbers.size() > 3) code_sign(coder, place, false, numbers);
     note_miss(place.wedge, kUsualDirectionMiss);
     const Vec3i near = place.beside != kNoIndex ? direction(place.beside) : Vec3i{};
-    return code_point(coder, near, 16 * 12, 1, numbers);
+    return code_near(coder, near, 16 * 12, 1, numbers);
   }
   const Vec3i around = mean_of_ring(place);
   const Hints hints = numbers.size() > 3 ? tangents_of(place, around) : normals_of(place);
-  if (numbers.size() > 3 && !code_sign(coder, place, hints.is_mirrored, numbers)) return false;
+  if (numbers.size() > 3) code_sign(coder, place, hints.is_mirrored, numbers);
   const Vec3i& own = hints.own;
   const auto count = static_cast<std::int64_t>(place.ring.size());
   std::int64_t miss_sum = 0, turn = 0, off = 0;
@@ -197,7 +207,7 @@ bool DirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, st
                                    log_of(off / count),
                                    log_of(length_of(hints.surface_around - own))};
   const auto log_error = static_cast<int>(std::clamp<std::int64_t>(size_.predict(traits), 16, 16 * 14));
-  if (!code_point(coder, expected, log_error, 0, numbers)) return false;
+  if (!code_near(coder, expected, log_error, 0, numbers)) return false;
 
   const Vec3i found = unit({numbers[0], numbers[1], numbers[2]});
   for (int c = 0; c < 3; ++c) pulls_.add(pulls[static_cast<std::size_t>(c)], (found[c] - own[c]) / 4);

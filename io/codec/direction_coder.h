@@ -9,10 +9,29 @@
 
 namespace lodestone::detail {
 
-/// Codes directions: normals close to those of the surface, tangents close to where texture coordinates grow.
-class DirectionCoder final : public ElementCoder {
+/// Codes directions: points of an octahedron.
+class DirectionCoder : public ElementCoder {
+ protected:
+  explicit DirectionCoder(const AttributeSpec& spec) : ElementCoder(spec) {}
+
+  /// Codes a direction near one of any length, not longer than 2^24, and learns how far off that was: see off().
+  /// `guess`: what is known of its numbers but their values; their kind is the first of two.
+  bool code_point(BitCoder& coder, const Vec3i& expected, NumberCoder::Guess guess, std::span<std::int32_t> numbers);
+  /// Codes a fourth component. `is_mirrored`: whether texture coordinates run the other way round.
+  void code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored, std::span<std::int32_t> numbers);
+  /// How far the numbers coded last were off altogether, sixteenths.
+  std::int64_t off() const { return off_; }
+
+ private:
+  NumberCoder numbers_;
+  BitMixer bits_{std::array<std::uint32_t, 1>{16}, 1};
+  std::int64_t off_ = 0;
+};
+
+/// Normals are close to those of the surface, tangents close to where texture coordinates grow: how close, is learnt.
+class FittedDirectionCoder final : public DirectionCoder {
  public:
-  explicit DirectionCoder(const AttributeSpec& spec);
+  explicit FittedDirectionCoder(const AttributeSpec& spec);
 
  protected:
   bool code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) override;
@@ -26,13 +45,10 @@ class DirectionCoder final : public ElementCoder {
 
   Vec3i direction(Index wedge) const;
   Vec3i mean_of_ring(const ElementPlace& place) const;
-  bool code_point(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
-                  std::span<std::int32_t> numbers);
-  bool code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored, std::span<std::int32_t> numbers);
+  bool code_near(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
+                 std::span<std::int32_t> numbers);
   void note_miss(Index wedge, int miss);
 
-  NumberCoder numbers_;
-  BitMixer bits_{std::array<std::uint32_t, 1>{16}, 1};
   Pulls pulls_;
   Traits size_;
   std::vector<std::int16_t> misses_;  // by wedge: sixteenths of the logarithm of the error

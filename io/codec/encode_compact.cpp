@@ -149,6 +149,7 @@ Result<void> check_counts(const ProgressiveMesh& mesh) {
 LevelLimits limits_of(const ProgressiveMesh& mesh, const CompactOptions& options) {
   LevelLimits limits;
   limits.grid_bits = options.grid_bits;
+  limits.is_fast = options.coding == CompactCoding::Fast;
   limits.group_count = static_cast<Index>(mesh.groups.size());
   limits.most_vertices = mesh.positions.size();
   limits.most_wedges = mesh.wedge_vertex.size();
@@ -191,11 +192,13 @@ class CompactEncoder {
         levels_(limits_of(mesh, options), specs_),
         coded_(mesh),
         planner_(mesh, coded_, levels_.mesh()),
-        listener_(options.progress, mesh.record_count()) {
+        listener_(options.progress, mesh.record_count()),
+        coder_(options.coding == CompactCoding::Fast) {
     coder_.set_listener(&listener_);
     levels_.count_attributes();
     header_.grid_bits = options.grid_bits;
     header_.lossless = options.lossless;
+    header_.coding = options.coding;
     header_.grid = grid_of(mesh, options);
     header_.attributes = specs_;
     for (const FaceGroup& group : mesh.groups)
@@ -690,7 +693,7 @@ Result<void> CompactEncoder::write_round(Index first, Index end) {
 
 void CompactEncoder::end_chunk() {
   std::vector<std::byte> bytes = coder_.finish();
-  coder_ = BitCoder();
+  coder_ = BitCoder(header_.is_fast());
   coder_.set_listener(&listener_);
   bits_at_ = coder_.bits();
   const std::uint64_t least = header_.least_bytes(chunk_, header_.chunks.empty());

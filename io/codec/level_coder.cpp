@@ -23,11 +23,11 @@ void rotate_face(Index* vertices, Index* wedges) {
 
 LevelCoder::LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec> attributes)
     : limits_(limits),
+      patch_coder_(limits.is_fast),
       wedge_coder_(limits.group_count),
       loose_coder_(limits.group_count),
-      points_(limits.grid_bits),
-      move_coder_(limits.grid_bits),
-      attributes_(attributes),
+      shapes_(ShapeCoder::make(limits.is_fast, limits.grid_bits)),
+      attributes_(attributes, limits.is_fast),
       flags_(std::array<std::uint32_t, 1>{kFlags}, 1) {}
 
 void LevelCoder::allow(std::uint64_t vertices, std::uint64_t wedges, std::uint64_t faces) {
@@ -54,7 +54,7 @@ bool LevelCoder::code_flag(BitCoder& coder, std::uint32_t which, bool is) {
 bool LevelCoder::code_base(BitCoder& coder, BaseMesh& base) {
   if (!base_coder_.code(coder, base, limits_.most_wedges, wedges_)) return false;
   for (Vec3i& position : base.positions)
-    if (!points_.code_base(coder, position) || !coder.goes_on()) return false;
+    if (!shapes_->code_base(coder, position) || !coder.goes_on()) return false;
   positions_ = base.positions;
   moved_.assign(positions_.size(), 1);
   std::vector<Index> corners = base.corners, wedges;
@@ -71,8 +71,7 @@ bool LevelCoder::code_base_attributes(BitCoder& coder, std::span<const std::vect
 bool LevelCoder::code_step(BitCoder& coder, int& step) {
   step = static_cast<int>(coder.code_raw(static_cast<std::uint32_t>(step), 4));
   if (step > limits_.grid_bits - kLeastStepBits) return false;
-  move_coder_.start(step_, step, positions_.size());
-  points_.set_step(step);
+  shapes_->start_stage(step_, step, positions_.size());
   step_ = step;
   return true;
 }
@@ -81,7 +80,7 @@ bool LevelCoder::code_step(BitCoder& coder, int& step) {
 bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std::span<const Vec3i> targets) {
   if (++move_count_ > kMostMovesEach * limits_.most_vertices) return false;
   Vec3i to = targets.empty() ? Vec3i{} : targets[vertex];
-  if (!move_coder_.code(coder, mesh_, vertex, half, positions_, points_.normals(), to)) return false;
+  if (!shapes_->code_move(coder, mesh_, vertex, half, positions_, to)) return false;
   if (!(to == positions_[vertex])) moves_.push_back({star, vertex, positions_[vertex], to});
   positions_[vertex] = to;
   moved_[vertex] = 1;
@@ -91,7 +90,7 @@ bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std
 
 bool LevelCoder::code_moves(BitCoder& coder, std::span<const Vec3i> targets) {
   moves_.clear();
-  points_.start_round(mesh_, positions_);
+  shapes_->start_round(mesh_, positions_);
   if (unmoved_count_ == 0) return true;
   Index star = 0;
   const auto move_ends = [&](Index half) {
@@ -118,7 +117,7 @@ bool LevelCoder::code_stage_end(BitCoder& coder, bool& ends, std::span<const Vec
   moved_.resize(positions_.size(), 1);
   if (!ends) return true;
   if (unmoved_count_ > 0) {
-    points_.start_round(mesh_, positions_);
+    shapes_->start_round(mesh_, positions_);
     std::vector<Index> half(positions_.size(), kNoIndex);
     for (Index h = 0; h < 3 * mesh_.face_count(); ++h)
       if (half[mesh_.from(h)] == kNoIndex) half[mesh_.from(h)] = h;
@@ -221,10 +220,11 @@ bool LevelCoder::split(std::size_t i) {
   for (const Index face : faces)
     split_.faces.push_back(
         {face, mesh_.group(face), mesh_.wedge(3 * face), mesh_.wedge(3 * face + 1), mesh_.wedge(3 * face + 2)});
+  places_.resize(mesh_.vertex_count());
+  for (auto k = static_cast<Index>(faces.size()); k-- > 0;) places_[mesh_.from(3 * faces[k] + 1)] = k;
   const auto place_of = [&](Index wedge) {
-    const Index vertex = wedges_.vertex(wedge);
-    for (Index k = 0; k < faces.size(); ++k)
-      if (mesh_.from(3 * faces[k] + 1) == vertex) return k;
+    const Index vertex = wedges_.vertex(wedge), place = places_[vertex];
+    if (place < faces.size() && mesh_.from(3 * faces[place] + 1) == vertex) return place;
     return static_cast<Index>(faces.size());  // the end of an open star
   };
   for (const NewStars::Coarse& coarse : stars_.coarse_of(i))
@@ -279,12 +279,13 @@ bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
   const auto star_of = [&](std::size_t i) { return vertices_.stars_of(i).front(); };
   for (std::size_t i = 0; i < count; ++i) {
     const Index star = star_of(i);
-    positions_[first + i] = PointCoder::guess(mesh_, stars_.star(star), stars_.stars[star].closed, positions_);
+    positions_[first + i] = ShapeCoder::guess(mesh_, stars_.star(star), stars_.stars[star].closed, positions_);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Index star = star_of(i);
     Vec3i position = given.empty() ? Vec3i{} : given[i];
-    if (!points_.code(coder, mesh_, stars_.star(star), stars_.stars[star].closed, positions_, position)) return false;
+    if (!shapes_->code_point(coder, mesh_, stars_.star(star), stars_.stars[star].closed, positions_, position))
+      return false;
     if (!coder.goes_on()) return false;
     positions_[first + i] = position;
   }
@@ -309,7 +310,7 @@ bool LevelCoder::code_loose_vertex(BitCoder& coder, LooseVertex& vertex) {
   if (mesh_.face_count() > limits_.most_faces || wedges_.size() > limits_.most_wedges) return false;
   if (!code_extra(coder, vertex.extra) || !end_vertex()) return false;
   star_.assign(sectors_.fine.begin() + static_cast<std::ptrdiff_t>(first_fine), sectors_.fine.end());
-  if (!points_.code_loose(coder, guess_loose(), vertex.position)) return false;
+  if (!shapes_->code_loose(coder, guess_loose(), vertex.position)) return false;
   end_star(static_cast<Index>(positions_.size()), false, true);
   positions_.push_back(vertex.position);
   vertices_.stars.push_back(static_cast<Index>(stars_.stars.size() - 1));

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,9 @@
 #include "codec/bit_coder.h"
 #include "codec/bit_mixer.h"
 #include "codec/loose_coder.h"
-#include "codec/move_coder.h"
 #include "codec/patch_coder.h"
 #include "codec/patch_mesh.h"
-#include "codec/point_coder.h"
+#include "codec/shape_coder.h"
 #include "codec/star.h"
 #include "codec/wedge_coder.h"
 #include "codec/wedge_table.h"
@@ -24,6 +24,7 @@ namespace lodestone::detail {
 /// counts for nothing: a reader sets these for each chunk.
 struct LevelLimits {
   int grid_bits = 14;
+  bool is_fast = false;  ///< CompactCoding::Fast
   Index group_count = 1;
   std::uint64_t most_vertices = kNoIndex;
   std::uint64_t most_wedges = kNoIndex;
@@ -170,8 +171,7 @@ class LevelCoder {
   PatchCoder patch_coder_;
   WedgeCoder wedge_coder_;
   LooseCoder loose_coder_;
-  PointCoder points_;
-  MoveCoder move_coder_;
+  std::unique_ptr<ShapeCoder> shapes_;
   AttributeCoder attributes_;
   BitMixer flags_;
   std::uint32_t round_number_ = 0;
@@ -190,6 +190,7 @@ class LevelCoder {
   SectorList sectors_;
   std::size_t vertices_done_ = 0;  // those of the round that have attributes
   std::vector<Index> star_, joined_, vertex_faces_;
+  std::vector<Index> places_;  // by vertex: which corner it is of the ring that was looked at last, if it is one
   Star split_;
 };
 

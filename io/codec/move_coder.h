@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <lodestone/core/ids.h>
@@ -11,9 +10,7 @@
 #include "codec/bit_coder.h"
 #include "codec/coordinate_coder.h"
 #include "codec/fixed_point.h"
-#include "codec/number_coder.h"
 #include "codec/online_fit.h"
-#include "codec/patch_mesh.h"
 #include "codec/ring.h"
 #include "codec/shift_fit.h"
 
@@ -22,37 +19,31 @@ namespace lodestone::detail {
 /// Codes where vertices of a level go that its rounds move, each from where it lies and the ring around it.
 class MoveCoder {
  public:
-  explicit MoveCoder(int grid_bits);
+  MoveCoder();
 
-  /// From now on vertices that lie on multiples of 2^`from` go to multiples of 2^`to`; none of so many has moved.
-  void start(int from, int to, std::size_t vertex_count);
-
-  /// Codes where a vertex goes. `half`: a half-edge that leaves it, or kNoIndex; `normals`: of the vertices. False
-  /// where what is read lies off the grid.
-  bool code(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
-            std::span<const Vec3i> normals, Vec3i& position);
+  /// From now on none of so many vertices has moved.
+  void start(std::size_t vertex_count);
+  /// Codes where a vertex goes that lies at `from`, a multiple of 2^`from_step`: a multiple of 2^`step`.
+  void code(BitCoder& coder, const Ring& ring, bool closed, const Vec3i& from, int from_step, int step,
+            Vec3i& position);
+  /// Learns from the move that was coded last.
+  void learn(Index vertex, const Vec3i& position, const Ring& ring);
 
  private:
   static constexpr int kPulls = 4;
   static constexpr int kTraits = 6;
   using Traits = OnlineFit<kTraits>;
 
-  bool find_star(const PatchMesh& mesh, Index half);
-  void find_misses();
+  void find_misses(const Ring& ring);
 
-  int grid_bits_;
-  int from_ = 0, to_ = 0;
   CoordinateCoder coordinates_;
-  NumberCoder bare_;  // of vertices without faces
   ShiftFit<kPulls> shift_;
   Traits normal_size_, tangent_size_;
   std::vector<std::optional<Miss>> misses_;  // by vertex that has moved, over the ring's radius
   std::vector<Vec3i> went_;                  // by vertex: how far, sixteenths
 
   // Of the vertex at hand.
-  std::vector<Index> outer_;
-  bool closed_ = false;
-  Ring ring_;
+  Vec3i start_, point_;  // where it lies, and where it is expected; sixteenths
   std::optional<Miss> around_;
   Vec3i went_around_;  // mean of those that have moved
   Traits::Features traits_{};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "codec/fixed_point.h"
 
@@ -19,16 +20,21 @@ constexpr std::array<std::uint32_t, 5> kStepContexts = {
     kNodes* NumberCoder::kHints * 4};
 constexpr std::array<std::uint32_t, 2> kRestContexts = {kNodes * 4, kNodes* kScales};
 
+// Of a fast coder: the scale's bits, in sixteenths, above those of a step; how many steps are even; the longest one.
+constexpr int kUnitBelow = 7;
+constexpr std::uint32_t kEvenSteps = 8;
+constexpr int kMostStepBits = 32;
+
 }  // namespace
 
-NumberCoder::NumberCoder() : steps_(kStepContexts, kNodes * 4), rest_(kRestContexts, 4) {}
+NumberCoder::Mixers::Mixers() : steps(kStepContexts, kNodes * 4), rest(kRestContexts, 4) {}
 
-std::int64_t NumberCoder::code(BitCoder& coder, std::int64_t number, const Guess& guess) {
+std::int64_t NumberCoder::code_mixed(BitCoder& coder, std::int64_t number, const Guess& guess) {
+  if (!mixers_) mixers_.emplace();
   const std::int64_t scale = std::max<std::int64_t>(guess.scale, 1);
   const std::int64_t first = (guess.value + 15) >> 4;  // the least number not below the prediction
   const auto fraction = static_cast<std::uint32_t>(((first << 4) - guess.value) >> 1);  // 0 … 7
-  const auto log_scale =
-      static_cast<std::uint32_t>(std::clamp((log2_16(static_cast<std::uint64_t>(scale)) - 16) / 8, 0, 23));
+  const std::uint32_t log_scale = bucket(log2_16(static_cast<std::uint64_t>(scale)), 16, 8, kScales);
   const auto small =
       static_cast<std::uint32_t>(std::clamp((log2_16(static_cast<std::uint64_t>(scale)) - 32) / 8, 0, 7));
   std::uint32_t side = 0;
@@ -38,7 +44,7 @@ std::int64_t NumberCoder::code(BitCoder& coder, std::int64_t number, const Guess
         (node * 2 + (small < 7 ? side : 0)) * kScales + log_scale, (node * kFractions + f) * 8 + small,
         (node * 4 + guess.kind) * kHints + guess.hints[0], (node * 4 + guess.kind) * kHints + guess.hints[1],
         (node * kHints + guess.hints[2]) * 4 + std::min(small / 2, 3U)};
-    return steps_.code(coder, bit, contexts, node * 4 + guess.kind);
+    return mixers_->steps.code(coder, bit, contexts, node * 4 + guess.kind);
   };
   side = static_cast<std::uint32_t>(code_step(0, number >= first ? 1 : 0));
   const std::int64_t distance = side != 0 ? number - first : first - 1 - number;
@@ -61,12 +67,34 @@ std::int64_t NumberCoder::code(BitCoder& coder, std::int64_t number, const Guess
                                        step * kScales + log_scale};
     int upper = distance >= middle ? 1 : 0;
     if (level < 2)
-      upper = rest_.code(coder, upper, contexts, static_cast<std::uint32_t>(level));
+      upper = mixers_->rest.code(coder, upper, contexts, static_cast<std::uint32_t>(level));
     else
       upper = coder.code(upper, 32768);
     (upper != 0 ? begin : end) = middle;
     ++level;
   }
+  return side != 0 ? first + begin : first - 1 - begin;
+}
+
+/// Steps outwards are half the scale or less, a power of two, from the ninth on twice as long each; where in its step
+/// the number lies are raw bits.
+std::int64_t NumberCoder::code_counted(BitCoder& coder, std::int64_t number, const Guess& guess) {
+  if (counters_.empty()) counters_.resize(std::size_t{4} * kScales * kNodes);
+  const auto scale = static_cast<std::uint64_t>(std::max<std::int64_t>(guess.scale, 1));
+  const int unit = std::clamp(static_cast<int>(std::bit_width(scale)) - kUnitBelow, 0, kMostStepBits - 1);
+  BitCounter* const nodes = &counters_[(guess.kind * kScales + bucket(log2_16(scale), 16, 8, kScales)) * kNodes];
+  const std::int64_t first = (guess.value + 15) >> 4;
+  const int side = nodes[0].code(coder, number >= first ? 1 : 0);
+  const std::int64_t distance = side != 0 ? number - first : first - 1 - number;
+  std::int64_t begin = 0;
+  int bits = unit;
+  for (std::uint32_t step = 1; bits < kMostStepBits; ++step) {
+    const std::int64_t end = begin + (std::int64_t{1} << bits);
+    if (nodes[std::min(step, kNodes - 1)].code(coder, distance >= end ? 1 : 0) == 0) break;
+    begin = end;
+    if (step >= kEvenSteps) ++bits;
+  }
+  begin += coder.code_raw(static_cast<std::uint32_t>(distance - begin), bits);
   return side != 0 ? first + begin : first - 1 - begin;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "codec/bit_coder.h"
+#include "codec/bit_counter.h"
 #include "codec/bit_mixer.h"
 #include "codec/fixed_point.h"
 
@@ -23,13 +26,22 @@ class NumberCoder {
     std::uint32_t hints[3] = {};  ///< < kHints: whatever else may tell of its distribution
   };
 
-  NumberCoder();
-  /// Codes a number; a reader passes anything.
-  std::int64_t code(BitCoder& coder, std::int64_t number, const Guess& guess);
+  /// Codes a number; a reader passes anything. By a fast coder, of hints nothing counts.
+  std::int64_t code(BitCoder& coder, std::int64_t number, const Guess& guess) {
+    return coder.is_fast() ? code_counted(coder, number, guess) : code_mixed(coder, number, guess);
+  }
 
  private:
-  BitMixer steps_;
-  BitMixer rest_;
+  struct Mixers {
+    BitMixer steps, rest;
+    Mixers();
+  };
+  std::int64_t code_mixed(BitCoder& coder, std::int64_t number, const Guess& guess);
+  std::int64_t code_counted(BitCoder& coder, std::int64_t number, const Guess& guess);
+
+  // Either, from the first number on.
+  std::optional<Mixers> mixers_;
+  std::vector<BitCounter> counters_;
 };
 
 }  // namespace lodestone::detail

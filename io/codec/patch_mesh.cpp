@@ -1,5 +1,7 @@
 #include "codec/patch_mesh.h"
 
+#include <algorithm>
+
 #include <lodestone/core/detail/edges.h>
 
 namespace lodestone::detail {
@@ -90,11 +92,7 @@ void PatchMesh::add_ear(Index half, Index vertex, std::uint32_t round, std::vect
 void PatchMesh::write_face(Index face, const std::array<Index, 3>& vertices, const std::array<Index, 3>& wedges,
                            Index group, std::uint32_t round) {
   if (face == face_count()) {
-    corners_.resize(corners_.size() + 3);
-    wedges_.resize(wedges_.size() + 3);
-    twins_.resize(twins_.size() + 3);
-    groups_.push_back(0);
-    made_in_.push_back(0);
+    append_faces(1);
   } else {
     for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[corners_[h]];
   }
@@ -108,23 +106,22 @@ void PatchMesh::write_face(Index face, const std::array<Index, 3>& vertices, con
   made_in_[face] = round;
 }
 
+void PatchMesh::append_faces(std::size_t count) {
+  const std::size_t faces = face_count() + count;
+  corners_.resize(3 * faces);
+  wedges_.resize(3 * faces);
+  twins_.resize(3 * faces);
+  groups_.resize(faces);
+  made_in_.resize(faces);
+}
+
 void PatchMesh::place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
                            std::vector<Index>& star) {
   const std::size_t count = outer_.size();
   if (vertex == degree_.size()) add_vertex();
-  star.clear();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i < faces.size())
-      star.push_back(faces[i]);
-    else {
-      star.push_back(static_cast<Index>(face_count()));
-      corners_.resize(corners_.size() + 3);
-      wedges_.resize(wedges_.size() + 3);
-      twins_.resize(twins_.size() + 3);
-      groups_.push_back(0);
-      made_in_.push_back(0);
-    }
-  }
+  star.assign(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(std::min(count, faces.size())));
+  for (auto face = static_cast<Index>(face_count()); star.size() < count; ++face) star.push_back(face);
+  if (count > faces.size()) append_faces(count - faces.size());
   for (std::size_t i = 0; i < count; ++i) {
     const Index first = 3 * star[i];
     const Outer& outer = outer_[i];

@@ -65,6 +65,7 @@ class PatchMesh {
   struct Outer {
     Index from, to, twin, from_wedge, to_wedge, group;
   };
+  void append_faces(std::size_t count);
   void place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
                   std::vector<Index>& star);
   bool fit(Index half, Index other) const;

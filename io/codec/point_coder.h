@@ -18,30 +18,18 @@
 
 namespace lodestone::detail {
 
-/// Codes the positions of vertices on a grid, each from the ring around it.
+/// Codes where new vertices lie on a grid, each from the ring around it.
 class PointCoder {
  public:
-  explicit PointCoder(int grid_bits);
+  PointCoder();
 
-  /// From now on coordinates are multiples of 2^shift.
-  void set_step(int shift) { shift_ = shift; }
-  std::span<const Vec3i> normals() const { return normals_; }
-
-  /// Codes the next vertex of the base mesh. False where what is read lies off the grid.
-  bool code_base(BitCoder& coder, Vec3i& position);
-  /// Codes the next vertex, which has no ring. False where what is read lies off the grid.
-  bool code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position);
-
-  /// Looks at the level before a round.
-  void start_round(const PatchMesh& mesh, std::span<const Vec3i> positions);
-
-  /// Guesses where a new vertex lies, for those that are coded before it. `star`: its faces in order, it first in each.
-  static Vec3i guess(const PatchMesh& mesh, std::span<const Index> star, bool closed, std::span<const Vec3i> positions);
-
-  /// Codes the next vertex: `position` is what a writer has, and a reader gets. Those of its round that follow have a
-  /// guess. False where what is read lies off the grid.
-  bool code(BitCoder& coder, const PatchMesh& mesh, std::span<const Index> star, bool closed,
-            std::span<const Vec3i> positions, Vec3i& position);
+  /// The next vertex is one of the base mesh, or has no ring.
+  void add_base();
+  void add_loose();
+  /// Codes the next vertex: `position` is what a writer has, and a reader gets, a multiple of 2^`step`.
+  void code(BitCoder& coder, const Ring& ring, bool closed, int step, Vec3i& position);
+  /// Learns from the vertex that was coded last.
+  void learn(const Vec3i& position, const Ring& ring, bool closed);
 
  private:
   static constexpr int kSizes = 4;   // of rings, told apart where positions are predicted
@@ -54,27 +42,19 @@ class PointCoder {
     Traits::Features normal_traits{}, tangent_traits{};
   };
 
-  void find_misses();
-  void predict(bool closed);
-  void predict_size(const ShiftFit<Ring::kPulls>& shift);
-  void learn(const Vec3i& position, bool closed);
-  std::size_t size_class(bool closed) const;
+  void find_misses(const Ring& ring);
+  void predict(const Ring& ring, bool closed);
+  void predict_size(const Ring& ring, const ShiftFit<Ring::kPulls>& shift);
+  static std::size_t size_class(const Ring& ring, bool closed);
 
-  int grid_bits_;
-  int shift_ = 0;
-  NumberCoder base_;
-  NumberCoder loose_;
   CoordinateCoder coordinates_;
   std::vector<ShiftFit<Ring::kPulls>> shifts_;  // by class of ring size
   Traits normal_size_, tangent_size_;
 
-  std::vector<Vec3i> normals_;  // by vertex of the level before the round
-  std::vector<Miss> misses_;    // by vertex, over the ring's radius
+  std::vector<Miss> misses_;  // by vertex, over the ring's radius
   std::size_t base_count_ = 0;
 
   // Of the vertex at hand.
-  std::vector<Index> outer_;
-  Ring ring_;
   Miss around_;  // mean of those around
   bool has_misses_ = false;
   Prediction prediction_;

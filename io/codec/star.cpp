@@ -30,11 +30,10 @@ class Splitter {
   bool split() {
     const std::size_t count = star_.faces.size();
     if (count == 0 || ring_size_ > kMostPlaces) return false;
+    if (star_.closed && !has_cut()) return add_closed();
     std::size_t first = 0;
-    if (star_.closed) {
-      while (first < count && !is_cut(first)) ++first;
-      if (first == count) return add_closed();
-    }
+    if (star_.closed)
+      while (!is_cut(first)) ++first;
     is_used_.assign(star_.coarse.size(), false);
     // A face alone stands on an edge of what others enclose, or has moved with a coarse face that is left over.
     for (const bool alone : {false, true})
@@ -50,10 +49,19 @@ class Splitter {
  private:
   const Star::Spoke& face(std::size_t i) const { return star_.faces[i % star_.faces.size()]; }
 
-  /// Whether something differs at the spoke before a face.
-  bool is_cut(std::size_t i) const {
-    const Star::Spoke &before = face(i + star_.faces.size() - 1), &after = face(i);
+  /// Whether something differs at the spoke between two faces.
+  static bool differ(const Star::Spoke& before, const Star::Spoke& after) {
     return before.centre != after.centre || before.group != after.group || before.to != after.from;
+  }
+  bool is_cut(std::size_t i) const { return differ(face(i + star_.faces.size() - 1), face(i)); }
+  /// The same of any spoke of a closed star.
+  bool has_cut() const {
+    const Star::Spoke* before = &star_.faces.back();
+    for (const Star::Spoke& after : star_.faces) {
+      if (differ(*before, after)) return true;
+      before = &after;
+    }
+    return false;
   }
 
   /// A ring corner's number in a run's polygon; more than `count` where it has none. A ring that begins and ends at one
@@ -137,15 +145,27 @@ class Splitter {
     return true;
   }
 
+  /// Most stars are of one sector, with all coarse faces in it.
   bool add_closed() {
-    const Run run = {0, star_.faces.size()};
-    add_corners(run);
-    is_used_.assign(star_.coarse.size(), false);
-    for (std::size_t i = 0; i < star_.coarse.size(); ++i) {
-      const auto& places = star_.coarse[i].places;
-      if (!add_coarse(run, i, {places[0], places[1], places[2]})) return false;
+    const std::vector<Star::Spoke>& faces = star_.faces;
+    for (const Star::Spoke& spoke : faces) {
+      sectors_.polygons.push_back(spoke.from);
+      sectors_.fine.push_back(spoke.face);
     }
-    return used_ + 2 == ring_size_ && end(run, SectorShape::Closed);
+    for (const Star::Coarse& triangle : star_.coarse) {
+      if (triangle.group != faces.front().group) return false;
+      std::array<Index, 3> places = triangle.places;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (places[k] >= faces.size() || faces[places[k]].from != triangle.wedges[k]) return false;
+      if (places[0] > places[1]) std::swap(places[0], places[1]);
+      if (places[1] > places[2]) std::swap(places[1], places[2]);
+      if (places[0] > places[1]) std::swap(places[0], places[1]);
+      if (places[0] == places[1] || places[1] == places[2]) return false;
+      const auto narrow = [&](std::size_t k) { return static_cast<std::uint8_t>(places[k]); };
+      sectors_.coarse.push_back(triangle.face);
+      sectors_.triangles.push_back({narrow(0), narrow(1), narrow(2)});
+    }
+    return star_.coarse.size() + 2 == ring_size_ && end({0, faces.size()}, SectorShape::Closed);
   }
 
   bool add_open(const Run& run) {

@@ -29,31 +29,31 @@ Vec3i normal_of(const ElementPlace& place) {
 
 }  // namespace
 
-TextureCoder::TextureCoder(const AttributeSpec& spec)
+FittedTextureCoder::FittedTextureCoder(const AttributeSpec& spec)
     : ElementCoder(spec),
       pulls_{Pulls({kWholeWeight, 0, 0}, 1 << 17), Pulls({kWholeWeight, 0, 0}, 1 << 17)},
       size_{Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14), Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14)} {}
 
-void TextureCoder::note_miss(Index wedge, int miss) {
+void FittedTextureCoder::note_miss(Index wedge, int miss) {
   if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualTextureMiss);
   misses_[wedge] = static_cast<std::int16_t>(miss);
 }
 
-void TextureCoder::pass(const ElementPlace& place) { note_miss(place.wedge, kUsualTextureMiss); }
+void FittedTextureCoder::pass(const ElementPlace& place) { note_miss(place.wedge, kUsualTextureMiss); }
 
-int TextureCoder::miss_around(const ElementPlace& place) const {
+int FittedTextureCoder::miss_around(const ElementPlace& place) const {
   std::int64_t sum = 0;
   for (const Index other : place.ring) sum += other < misses_.size() ? misses_[other] : kUsualTextureMiss;
   return static_cast<int>(sum / static_cast<std::int64_t>(place.ring.size()));
 }
 
-void TextureCoder::add_point(const ElementPlace& place, const Vec3i& along_x, const Vec3i& along_y, Index wedge) {
+void FittedTextureCoder::add_point(const ElementPlace& place, const Vec3i& along_x, const Vec3i& along_y, Index wedge) {
   const Vec3i d = place.positions[place.wedges.vertex(wedge)] - place.positions[place.wedges.vertex(place.wedge)];
   points_.push_back({dot(d, along_x) >> 4, dot(d, along_y) >> 4, {16 * number(wedge, 0), 16 * number(wedge, 1)}});
 }
 
 /// Gathers the points around, projected along the normal.
-void TextureCoder::gather(const ElementPlace& place) {
+void FittedTextureCoder::gather(const ElementPlace& place) {
   points_.clear();
   const Vec3i n = normal_of(place);
   const Vec3i first =
@@ -78,7 +78,7 @@ void TextureCoder::gather(const ElementPlace& place) {
 }
 
 /// Fits a plane to the first points: its value at the vertex, and how far it is from the ring.
-void TextureCoder::fit_plane(std::size_t count, Guess& guess) const {
+void FittedTextureCoder::fit_plane(std::size_t count, Guess& guess) const {
   const auto n = static_cast<std::int64_t>(count);
   std::int64_t x_sum = 0, y_sum = 0;
   Pair sum{};
@@ -123,7 +123,7 @@ void TextureCoder::fit_plane(std::size_t count, Guess& guess) const {
   guess.bend = bend / static_cast<std::int64_t>(ring_count_);
 }
 
-TextureCoder::Guess TextureCoder::look() {
+FittedTextureCoder::Guess FittedTextureCoder::look() {
   Guess guess;
   const auto n = static_cast<std::int64_t>(ring_count_);
   for (std::size_t c = 0; c < 2; ++c) {
@@ -153,8 +153,8 @@ TextureCoder::Guess TextureCoder::look() {
   return guess;
 }
 
-bool TextureCoder::code_pair(BitCoder& coder, const Pair& expected, std::int64_t error, std::uint32_t kind,
-                             std::uint32_t hint, std::span<std::int32_t> numbers) {
+bool FittedTextureCoder::code_pair(BitCoder& coder, const Pair& expected, std::int64_t error, std::uint32_t kind,
+                                   std::uint32_t hint, std::span<std::int32_t> numbers) {
   const std::int64_t lowest = spec().lowest(), highest = spec().highest();
   NumberCoder::Guess guess;
   guess.scale = std::max<std::int64_t>(error, 1);
@@ -172,7 +172,7 @@ bool TextureCoder::code_pair(BitCoder& coder, const Pair& expected, std::int64_t
   return true;
 }
 
-bool TextureCoder::code_alone(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
+bool FittedTextureCoder::code_alone(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
   const std::int64_t lowest = spec().lowest(), highest = spec().highest();
   NumberCoder::Guess guess;
   guess.scale = (highest - lowest) * 2;
@@ -187,7 +187,7 @@ bool TextureCoder::code_alone(BitCoder& coder, const ElementPlace& place, std::s
   return true;
 }
 
-bool TextureCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
+bool FittedTextureCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
   if (place.ring.empty()) return code_alone(coder, place, numbers);
   gather(place);
   const Guess guess = look();

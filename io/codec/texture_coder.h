@@ -10,9 +10,9 @@
 namespace lodestone::detail {
 
 /// Codes pairs of numbers that are close to a linear map of the surface, as texture coordinates are.
-class TextureCoder final : public ElementCoder {
+class FittedTextureCoder final : public ElementCoder {
  public:
-  explicit TextureCoder(const AttributeSpec& spec);
+  explicit FittedTextureCoder(const AttributeSpec& spec);
 
  protected:
   bool code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) override;

@@ -106,6 +106,8 @@ std::vector<Bytes> lodestone::test::fuzz_seeds() {
       if (const auto kept = encode_compact(result->mesh, lossless)) seeds.push_back(bytes_of(kept->bytes));
       const auto levels = scattered_levels(result->mesh, 2, 0.02, dense_rounds * 0.01, 1);
       if (const auto placed = encode_compact(result->mesh, compact, levels)) seeds.push_back(bytes_of(placed->bytes));
+      compact.coding = CompactCoding::Fast;
+      if (const auto fast = encode_compact(result->mesh, compact, levels)) seeds.push_back(bytes_of(fast->bytes));
     }
   return seeds;
 }

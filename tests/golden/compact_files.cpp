@@ -31,8 +31,10 @@ ProgressiveMesh simplified(const TriangleSoup& soup, bool vanish = false) {
   return simplify(assemble(soup).value().mesh, options).value().mesh;
 }
 
-Bytes encoded(const ProgressiveMesh& mesh, int grid_bits, std::span<const PlacedLevel> levels = {}) {
+Bytes encoded(CompactCoding coding, const ProgressiveMesh& mesh, int grid_bits,
+              std::span<const PlacedLevel> levels = {}) {
   CompactOptions options;
+  options.coding = coding;
   options.grid_bits = grid_bits;
   options.normal_bits = 8;
   return encode_compact(mesh, options, levels).value().bytes;
@@ -99,21 +101,22 @@ TriangleSoup skinned_tube(int m, int n) {
 }
 
 /// Keeps floats as they are: one has zeros of both signs, infinities and what is no number.
-Bytes lossless(TriangleSoup soup) {
+Bytes lossless(CompactCoding coding, TriangleSoup soup) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const float odd[] = {-0.0F, 0.0F, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN(), 1e-40F, -3.5e30F};
   std::vector<float> values;
   for (std::size_t i = 0; i < soup.positions.size(); ++i) values.push_back(odd[i % std::size(odd)]);
   soup.attributes.push_back(floats("_ODD", 1, values));
   CompactOptions options;
+  options.coding = coding;
   options.grid_bits = 10;
   options.lossless = true;
   return encode_compact(simplified(soup), options).value().bytes;
 }
 
-Bytes staged(const TriangleSoup& soup, std::size_t count, int grid_bits, bool vanish = false) {
+Bytes staged(CompactCoding coding, const TriangleSoup& soup, std::size_t count, int grid_bits, bool vanish = false) {
   const ProgressiveMesh mesh = simplified(soup, vanish);
-  return encoded(mesh, grid_bits, scattered_levels(mesh, count, 0.02, 0.02, 5));
+  return encoded(coding, mesh, grid_bits, scattered_levels(mesh, count, 0.02, 0.02, 5));
 }
 
 // FNV-1a of 64 bits.
@@ -188,30 +191,45 @@ std::string line_of(const ProgressiveMesh& mesh, std::size_t chunk) {
 }  // namespace
 
 std::vector<CompactFile> compact_files() {
-  return {
-      {"triangle", "a base of one triangle, and one vertex inside it",
-       [] { return encoded(simplified(fan(3, 0.4)), 8); }},
-      {"closed", "closed patches, two chunks", [] { return encoded(simplified(icosphere(3, 0.05, 4)), 12); }},
-      {"border", "borders: open patches and ears", [] { return encoded(simplified(terrain(16, 7)), 12); }},
-      {"groups", "groups with seams between them; joined patches of two sheets",
-       [] { return encoded(simplified(layered(slit_grid(8), 2)), 11); }},
-      {"seams", "normals and texture coordinates, several wedges at a vertex, moved sectors",
-       [] { return encoded(simplified(seam_cube(5)), 10); }},
-      {"tangents", "a seam, tangents that are mirrored on one half",
-       [] { return encoded(simplified(tangent_sphere(10, 8)), 11); }},
-      {"skin", "two sets of joints and weights, integers of every type",
-       [] { return encoded(simplified(skinned_tube(8, 10)), 11); }},
-      {"pieces", "loose records: pieces that come into being, wedges that no face uses yet",
-       [] { return encoded(simplified(many_components(3), true), 10); }},
-      {"sheets", "edges of many faces: loose records within what is there",
-       [] { return encoded(simplified(random_squares(4, 3), true), 10); }},
-      {"stages", "four stages: moves, and grids that get finer", [] { return staged(terrain(13, 6), 3, 12); }},
-      {"staged-pieces", "moves of vertices without faces", [] { return staged(tetrahedron(), 2, 8, true); }},
-      {"lossless", "floats bit for bit", [] { return lossless(tangent_sphere(7, 5)); }},
-      {"vertex", "one vertex at a time from nothing to a tetrahedron",
-       [] { return encoded(simplified(tetrahedron(), true), 8); }},
-      {"empty", "no vertices", [] { return encoded(simplified(empty_soup()), 8); }},
+  using Encode = Bytes (*)(CompactCoding);
+  struct Shape {
+    std::string name, what;
+    Encode encode;
   };
+  const std::vector<Shape> shapes = {
+      {"triangle", "a base of one triangle, and one vertex inside it",
+       [](CompactCoding coding) { return encoded(coding, simplified(fan(3, 0.4)), 8); }},
+      {"closed", "closed patches, two chunks",
+       [](CompactCoding coding) { return encoded(coding, simplified(icosphere(3, 0.05, 4)), 12); }},
+      {"border", "borders: open patches and ears",
+       [](CompactCoding coding) { return encoded(coding, simplified(terrain(16, 7)), 12); }},
+      {"groups", "groups with seams between them; joined patches of two sheets",
+       [](CompactCoding coding) { return encoded(coding, simplified(layered(slit_grid(8), 2)), 11); }},
+      {"seams", "normals and texture coordinates, several wedges at a vertex, moved sectors",
+       [](CompactCoding coding) { return encoded(coding, simplified(seam_cube(5)), 10); }},
+      {"tangents", "a seam, tangents that are mirrored on one half",
+       [](CompactCoding coding) { return encoded(coding, simplified(tangent_sphere(10, 8)), 11); }},
+      {"skin", "two sets of joints and weights, integers of every type",
+       [](CompactCoding coding) { return encoded(coding, simplified(skinned_tube(8, 10)), 11); }},
+      {"pieces", "loose records: pieces that come into being, wedges that no face uses yet",
+       [](CompactCoding coding) { return encoded(coding, simplified(many_components(3), true), 10); }},
+      {"sheets", "edges of many faces: loose records within what is there",
+       [](CompactCoding coding) { return encoded(coding, simplified(random_squares(4, 3), true), 10); }},
+      {"stages", "four stages: moves, and grids that get finer",
+       [](CompactCoding coding) { return staged(coding, terrain(13, 6), 3, 12); }},
+      {"staged-pieces", "moves of vertices without faces",
+       [](CompactCoding coding) { return staged(coding, tetrahedron(), 2, 8, true); }},
+      {"lossless", "floats bit for bit", [](CompactCoding coding) { return lossless(coding, tangent_sphere(7, 5)); }},
+      {"vertex", "one vertex at a time from nothing to a tetrahedron",
+       [](CompactCoding coding) { return encoded(coding, simplified(tetrahedron(), true), 8); }},
+      {"empty", "no vertices", [](CompactCoding coding) { return encoded(coding, simplified(empty_soup()), 8); }},
+  };
+  std::vector<CompactFile> files;
+  for (const auto& [folder, coding] :
+       {std::pair("compact-3.0", CompactCoding::Small), std::pair("compact-3.1", CompactCoding::Fast)})
+    for (const Shape& shape : shapes)
+      files.push_back({folder, shape.name, shape.what, [=, encode = shape.encode] { return encode(coding); }});
+  return files;
 }
 
 std::string compact_heading(const CompactFile& file) { return "# " + file.what; }

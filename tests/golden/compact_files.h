@@ -6,14 +6,17 @@
 #include <string>
 #include <vector>
 
-// What the files of compact-3.0 are made of.
+// What the files of compact-3.0 and compact-3.1 are made of.
 
 namespace lodestone::test {
 
-inline constexpr char kCompactFolder[] = "tests/golden/compact-3.0";
+inline constexpr char kGoldenFolder[] = "tests/golden";
+/// One for each minor version: of streams of small coding, and of fast.
+inline constexpr const char* kCompactFolders[] = {"compact-3.0", "compact-3.1"};
 
-/// A compact stream as the encoder wrote it when version 3.0 was fixed.
+/// A compact stream as the encoder wrote it when its version was fixed.
 struct CompactFile {
+  std::string folder;  ///< in kGoldenFolder
   std::string name;
   std::string what;  ///< what it is there for
   std::function<std::vector<std::byte>()> encode;

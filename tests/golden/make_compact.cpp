@@ -1,11 +1,11 @@
-// Writes tests/golden/compact-3.0 anew: its files and what each decodes to.
+// Writes tests/golden/compact-3.0 and compact-3.1 anew: their files and what each decodes to.
 //
-//   make_golden_compact [texts]
+//   make_golden_compact [texts | FOLDER]
 //   make_golden_compact lines FILE.lods …
 //
-// Version 3.0 is fixed, so its files are: with `texts` they are read, and only what they decode to is written. Without,
-// `simplify` and the encoder of today make them. Look at the difference before you keep it. With `lines` nothing is
-// written: it prints what any streams decode to, as tests/python/compact_decoder.py does.
+// Versions are fixed, so their files are: with `texts` they are read, and only what they decode to is written. Without,
+// `simplify` and the encoder of today make them, all or those of one folder. Look at the difference before you keep it.
+// With `lines` nothing is written: it prints what any streams decode to, as tests/python/compact_decoder.py does.
 
 #include <fstream>
 #include <iostream>
@@ -23,9 +23,11 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
-  const std::filesystem::path folder = std::filesystem::path(LODESTONE_SOURCE_DIR) / kCompactFolder;
-  const bool texts_alone = argc > 1 && std::string(argv[1]) == "texts";
+  const std::string asked = argc > 1 ? argv[1] : "";
+  const bool texts_alone = asked == "texts";
   for (const CompactFile& file : compact_files()) {
+    if (!texts_alone && !asked.empty() && asked != file.folder) continue;
+    const std::filesystem::path folder = std::filesystem::path(LODESTONE_SOURCE_DIR) / kGoldenFolder / file.folder;
     const std::filesystem::path path = folder / (file.name + ".lods");
     if (!texts_alone) {
       const auto bytes = file.encode();

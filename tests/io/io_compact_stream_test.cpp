@@ -38,9 +38,10 @@ ProgressiveMesh progressive(const TriangleSoup& soup, double dense_rounds = 1.5)
   return progressive(mesh_of(soup), dense_rounds);
 }
 
-CompactStream encoded(const ProgressiveMesh& mesh, int grid_bits = 12) {
+CompactStream encoded(const ProgressiveMesh& mesh, int grid_bits = 12, CompactCoding coding = CompactCoding::Small) {
   CompactOptions options;
   options.grid_bits = grid_bits;
+  options.coding = coding;
   return stream_of(mesh, options);
 }
 
@@ -190,17 +191,19 @@ std::vector<NamedShape> plain_shapes() {
 }  // namespace
 
 TEST_CASE("a compact stream decodes to the mesh it was made of, on the grid, and to its level after every round") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   for (const NamedShape& shape : plain_shapes())
     for (const double dense_rounds : {0.0, 1.5, 100.0})
       for (const int bits : {8, 12, 16}) {
         INFO(shape.name << ", rounds of " << dense_rounds << ", " << bits << " bits");
         const ProgressiveMesh mesh = progressive(shape.soup, dense_rounds);
-        const CompactStream stream = encoded(mesh, bits);
+        const CompactStream stream = encoded(mesh, bits, coding);
         check_same(mesh, stream, decoded(stream.bytes), bits);
       }
 }
 
 TEST_CASE("every progressive mesh can be encoded: seams, groups, attributes, borders, sheets, pieces that vanish") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   for (const NamedShape& shape : all_shapes()) {
     if (mesh_of(shape.soup).face_count() == 0) continue;
     for (const bool vanish : {false, true})
@@ -211,13 +214,14 @@ TEST_CASE("every progressive mesh can be encoded: seams, groups, attributes, bor
         options.vanish = vanish;
         const auto result = simplify(mesh_of(shape.soup), options);
         REQUIRE(result);
-        const CompactStream stream = encoded(result->mesh, 14);
+        const CompactStream stream = encoded(result->mesh, 14, coding);
         check_same(result->mesh, stream, decoded(stream.bytes), 14);
       }
   }
 }
 
 TEST_CASE("weights add up to one, in one set or two") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   TriangleSoup one = skinned_cylinder(12, 9);
   TriangleSoup two = one;
   for (const Attribute& given : one.attributes) {
@@ -233,7 +237,7 @@ TEST_CASE("weights add up to one, in one set or two") {
     }
   for (const TriangleSoup& soup : {one, two}) {
     const ProgressiveMesh mesh = progressive(soup);
-    const CompactStream stream = encoded(mesh);
+    const CompactStream stream = encoded(mesh, 12, coding);
     const ProgressiveMesh coded = decoded(stream.bytes);
     check_same(mesh, stream, coded, 12);
     std::vector<double> sums(coded.wedge_vertex.size(), 0);
@@ -248,6 +252,7 @@ TEST_CASE("weights add up to one, in one set or two") {
 }
 
 TEST_CASE("attributes of every type come back, what is not finite or no unit vector included") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   TriangleSoup soup = terrain(9, 3);
   const std::size_t count = soup.positions.size();
   Random random(5);
@@ -272,7 +277,7 @@ TEST_CASE("attributes of every type come back, what is not finite or no unit vec
   add("_F", ComponentType::Float32, 16, [&](std::size_t i) { return static_cast<float>(i % 7); });
   add("NORMAL", ComponentType::Float32, 3, [](std::size_t i) { return i % 5 == 0 ? 0.0F : 2.0F; });
   const ProgressiveMesh mesh = progressive(soup);
-  const CompactStream stream = encoded(mesh, 14);
+  const CompactStream stream = encoded(mesh, 14, coding);
   const ProgressiveMesh coded = decoded(stream.bytes);
   REQUIRE(coded.attributes.size() == mesh.attributes.size());
   ProgressiveMesh known = mesh, found = coded;
@@ -289,7 +294,7 @@ TEST_CASE("attributes of every type come back, what is not finite or no unit vec
     broken.data.insert(broken.data.end(), bytes, bytes + sizeof value);
   }
   odd.attributes.push_back(broken);
-  for (const float value : attribute_values(decoded(encoded(progressive(odd)).bytes).attributes[0]))
+  for (const float value : attribute_values(decoded(encoded(progressive(odd), 12, coding).bytes).attributes[0]))
     CHECK(std::isfinite(value));
 }
 
@@ -310,9 +315,12 @@ TEST_CASE("models cost what they are said to, and come back") {
   // Bits for each vertex at 12-bit positions, the whole stream; a little more than what they take.
   struct Limit {
     const char* path;
+    CompactCoding coding;
     double bits;
   };
-  for (const Limit& limit : {Limit{"mesh/cow.obj", 25.6}, Limit{"mesh/rocker-arm.obj", 20.7}}) {
+  for (const Limit& limit :
+       {Limit{"mesh/cow.obj", CompactCoding::Small, 25.6}, Limit{"mesh/rocker-arm.obj", CompactCoding::Small, 20.7},
+        Limit{"mesh/rocker-arm.obj", CompactCoding::Fast, 22.2}}) {
     if (kReduced) continue;
     INFO(limit.path);
     const auto path = model(limit.path);
@@ -323,13 +331,14 @@ TEST_CASE("models cost what they are said to, and come back") {
     soup.attributes.clear();
     soup.face_material.clear();
     const ProgressiveMesh mesh = progressive(soup);
-    const CompactStream stream = encoded(mesh);
+    const CompactStream stream = encoded(mesh, 12, limit.coding);
     check_same(mesh, stream, decoded(stream.bytes), 12);
     CHECK(8.0 * static_cast<double>(stream.bytes.size()) / static_cast<double>(mesh.positions.size()) < limit.bits);
   }
 }
 
 TEST_CASE("the meshes of real scenes come back with all their attributes") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   LODESTONE_SKIP_WITHOUT_MODELS();
   const std::size_t most_faces = kReduced ? 1000 : 40000;
   std::size_t count = 0;
@@ -341,7 +350,7 @@ TEST_CASE("the meshes of real scenes come back with all their attributes") {
         if (given.mesh.face_count() > most_faces) continue;
         INFO(path << ", " << given.name);
         const ProgressiveMesh mesh = progressive(given.mesh, 1.5);
-        const CompactStream stream = encoded(mesh, 14);
+        const CompactStream stream = encoded(mesh, 14, coding);
         check_same(mesh, stream, decoded(stream.bytes), 14);
         ++count;
       }
@@ -365,11 +374,13 @@ std::vector<double> all_parts(const CompactSizes& s) {
 }
 
 TEST_CASE("what a reader finds the parts of a compact stream to take is what its writer spent on them") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   for (const ProgressiveMesh& mesh : {progressive(skinned_cylinder(12, 9)), progressive(seam_sphere(16, 12)),
                                       progressive(terrain(40, 3)), progressive(icosphere(2, 0, 1), 0)}) {
-    const CompactStream stream = encoded(mesh);
+    const CompactStream stream = encoded(mesh, 12, coding);
     const auto parts = measure_compact(stream.bytes);
     REQUIRE(parts);
+    CHECK(parts->coding == coding);
     const std::vector<double> written = all_parts(stream.sizes), read = all_parts(parts->sizes);
     REQUIRE(read.size() == written.size());
     for (std::size_t i = 0; i < read.size(); ++i) {
@@ -466,9 +477,38 @@ TEST_CASE("a compact stream depends on nothing but the mesh") {
   CHECK(encoded(progressive(moved, 1.5)).bytes != bytes);
 }
 
+detail::CompactHeader header_of(const std::vector<std::byte>& stream) {
+  auto header = detail::read_compact_header(stream);
+  REQUIRE(header);
+  return std::move(*header);
+}
+
+TEST_CASE("how a stream is coded is in its header, and readers of other flags or of the small coding alone refuse it") {
+  const ProgressiveMesh mesh = progressive(icosphere(2, 0.05, 1));
+  std::vector<std::byte> small = encoded(mesh).bytes, fast = encoded(mesh, 12, CompactCoding::Fast).bytes;
+  constexpr std::size_t kMinorAt = 10, kFlagsAt = 17;
+  CHECK(small[kMinorAt] == std::byte{0});
+  CHECK(small[kFlagsAt] == std::byte{0});
+  CHECK(fast[kMinorAt] == std::byte{1});
+  CHECK(fast[kFlagsAt] == std::byte{2});  // readers of version 3.0 take 0 and 1 alone there
+  CHECK(header_of(fast).is_fast());
+  const ProgressiveMesh one = decoded(small), other = decoded(fast);
+  CHECK(one.positions == other.positions);
+  CHECK(one.wedge_vertex == other.wedge_vertex);
+  CHECK(one.triangles == other.triangles);
+  CHECK(one.deviation == other.deviation);
+  fast[kFlagsAt] = std::byte{4};
+  const std::uint32_t checksum = detail::checksum32(std::span(fast).first(header_of(small).header_bytes - 4));
+  std::memcpy(fast.data() + header_of(small).header_bytes - 4, &checksum, sizeof checksum);
+  const auto refused = decode_compact(fast);
+  REQUIRE(!refused);
+  CHECK(refused.error().message == "compact stream: flags are 4");
+}
+
 TEST_CASE("a compact stream that ends with a chunk is the level it leads to, and any other cut is an error") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   const ProgressiveMesh mesh = progressive(terrain(40, 3));
-  const CompactStream stream = encoded(mesh);
+  const CompactStream stream = encoded(mesh, 12, coding);
   const auto chunks = read_compact_chunks(stream.bytes);
   REQUIRE(chunks);
   REQUIRE(chunks->size() >= 3);
@@ -503,7 +543,8 @@ TEST_CASE("a compact stream that ends with a chunk is the level it leads to, and
 }
 
 TEST_CASE("a flipped bit anywhere in a compact stream is a named error, and so are bytes behind its end") {
-  std::vector<std::byte> bytes = encoded(progressive(icosphere(2, 0.05, 1))).bytes;
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
+  std::vector<std::byte> bytes = encoded(progressive(icosphere(2, 0.05, 1)), 12, coding).bytes;
   for (std::size_t at = 0; at < bytes.size(); ++at)
     for (int bit = 0; bit < 8; bit += kReduced ? 3 : 1) {
       bytes[at] ^= std::byte{1} << bit;
@@ -528,12 +569,6 @@ std::vector<std::byte> with_header(const std::vector<std::byte>& stream, const d
   const auto kept = body.first(static_cast<std::size_t>(std::min<std::uint64_t>(size, body.size())));
   bytes.insert(bytes.end(), kept.begin(), kept.end());
   return bytes;
-}
-
-detail::CompactHeader header_of(const std::vector<std::byte>& stream) {
-  auto header = detail::read_compact_header(stream);
-  REQUIRE(header);
-  return std::move(*header);
 }
 
 TEST_CASE("a chunk may add what it says of itself, whatever chunks say that never come") {
@@ -565,7 +600,7 @@ std::vector<std::byte> cloud_of(Index rounds, Index wedges_each) {
   using namespace detail;
   LevelCoder levels({}, {});
   ErrorCoder errors;
-  BitCoder coder;
+  BitCoder coder(false);
   int deviation = 0, curvature = 0;
   BaseMesh base;
   base.positions.resize(1);
@@ -640,11 +675,11 @@ TEST_CASE("of a wide star, the first faces tell of its wedges") {
     AttributeSpec spec;
     spec.type = ComponentType::UInt16;
     spec.component_count = 1;
-    AttributeCoder attributes(std::array{spec});
+    AttributeCoder attributes(std::array{spec}, false);
     std::vector<std::int32_t> numbers;
     for (Index i = 0; i <= kFaces; ++i)
       numbers.push_back(i < first_same ? static_cast<std::int32_t>(40503 * i % 65536) : 12345);
-    BitCoder coder;
+    BitCoder coder(false);
     REQUIRE(attributes.code_base(coder, mesh, wedges, positions, std::array{numbers}));
     const double before = coder.bits();
     attributes.look(mesh, wedges, positions);

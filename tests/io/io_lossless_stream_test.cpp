@@ -20,8 +20,9 @@
 namespace lodestone::test {
 namespace {
 
-CompactStream encoded(const ProgressiveMesh& mesh, int grid_bits = 12) {
+CompactStream encoded(const ProgressiveMesh& mesh, int grid_bits = 12, CompactCoding coding = CompactCoding::Small) {
   CompactOptions options;
+  options.coding = coding;
   options.grid_bits = grid_bits;
   options.lossless = true;
   return stream_of(mesh, options);
@@ -72,10 +73,11 @@ ProgressiveMesh sphere_with(const std::vector<float>& values) {
 }  // namespace
 
 TEST_CASE("a lossless stream gives back every float of every shape, on whatever grid") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   for (const ProgressiveMesh& mesh : progressive_shapes())
     for (const int bits : {8, 12, 16}) {
       INFO(mesh.record_count() << " records, " << bits << " bits");
-      const CompactStream stream = encoded(mesh, bits);
+      const CompactStream stream = encoded(mesh, bits, coding);
       check_bits(mesh, stream, decoded(stream.bytes));
     }
 }

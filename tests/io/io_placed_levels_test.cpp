@@ -41,8 +41,10 @@ Box box_of(const ProgressiveMesh& mesh) {
   return {{low, range}, static_cast<double>(range) / ((1 << kBits) - 1)};
 }
 
-CompactStream encoded(const ProgressiveMesh& mesh, const std::vector<PlacedLevel>& levels) {
+CompactStream encoded(const ProgressiveMesh& mesh, const std::vector<PlacedLevel>& levels,
+                      CompactCoding coding = CompactCoding::Small) {
   CompactOptions options;
+  options.coding = coding;
   options.grid_bits = kBits;
   options.grid = box_of(mesh).grid;
   return stream_of(mesh, options, levels);
@@ -73,6 +75,7 @@ void check_places(const ProgressiveMesh& coded, const CompactStream& stream, con
 }  // namespace
 
 TEST_CASE("levels of a stream lie where they were placed, and what follows them where the mesh has it") {
+  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   int count = 0;
   for (const ProgressiveMesh& mesh : progressive_shapes()) {
     const Box box = box_of(mesh);
@@ -81,7 +84,7 @@ TEST_CASE("levels of a stream lie where they were placed, and what follows them 
         INFO(count << ": " << mesh.record_count() << " records, " << level_count << " levels, precision " << precision);
         const double reach = 30 * box.step;
         const auto levels = scattered_levels(mesh, level_count, reach, precision * box.step, count + 1U);
-        const CompactStream stream = encoded(mesh, levels);
+        const CompactStream stream = encoded(mesh, levels, coding);
         const ProgressiveMesh coded = decoded(stream.bytes);
         const double step = precision > 0 ? 8 * box.step : box.step;
         const double far = 1.001 * (precision > 0 ? step : step / 2) + 1e-6;

@@ -4,7 +4,7 @@ from math import isqrt
 
 from compact_coding import (
     ZERO, Bits, NumberCoder, add, along, clamp, cross, cut, cut_each, div, dot, exp2_16, fit, hint, length, log, must, scaled,
-    shifted, sub, times, total, unit,
+    shifted, shorten, steepest, sub, times, total, unit, width,
 )  # fmt: skip
 from compact_header import DIRECTIONS, NUMBERS, TEXTURE, WEIGHTS
 from compact_level import NONE, prev_of
@@ -26,6 +26,10 @@ class Around:
         """Of face f: from its first corner to the second, and to the third."""
         p = self.points(f)
         return sub(p[1], p[0]), sub(p[2], p[0])
+
+    def surface(self):
+        """The sum of its faces' normals, not longer than 2^24."""
+        return shorten(total(cross(*self.edges(f)) for f in self.faces), 24)[0]
 
     def position(self, w):
         return self.level.positions[self.level.wedge_vertex[w]]
@@ -229,24 +233,76 @@ class DirectionModel(AttributeModel):
 
     def _point(self, coder, expected, error, base):
         size = sum(map(abs, expected))
+        scale = max(1, exp2_16(error) * 16 * self.highest // max(size, 16384))
+        return self._octahedron(coder, expected, scale, base, (hint(error, 0, 14), hint(size >> 10, 16, 1)))[0]
+
+    def _octahedron(self, coder, expected, scale, base, hints):
+        """The numbers, and how far the two that are coded were off altogether."""
+        size = sum(map(abs, expected))
         top = 2
         for c in (1, 0):
             if abs(expected[c]) > abs(expected[top]):
                 top = c
         point = (0, 0, 16 * self.highest) if size == 0 else cut_each(scaled(expected, 16 * self.highest), size)
-        scale = max(1, exp2_16(error) * 16 * self.highest // max(size, 16384))
-        h0, h1, h2 = hint(error, 0, 14), hint(size >> 10, 16, 1), 0
-        rest = self.highest
-        numbers = [0, 0, 0]
+        rest, off = self.highest, 0
+        numbers, h2 = [0, 0, 0], 0
         for i in (1, 2):
             c = (top + i) % 3
-            numbers[c] = self.coder.number(coder, point[c], scale, base + i - 1, (h0, h1, h2))
+            numbers[c] = self.coder.number(coder, point[c], scale, base + i - 1, (*hints, h2))
             rest -= abs(numbers[c])
             must(rest >= 0, f"{self.attribute.name}: a direction is not on its octahedron")
+            off += abs(16 * numbers[c] - point[c])
             h2 = hint(log(16 * numbers[c] - point[c]), 0, 12)
         same = rest == 0 or self.signs(coder, 1 if rest < self.highest // 4 else 0)
         numbers[top] = rest if (expected[top] >= 0) == bool(same) else -rest
-        return numbers
+        return numbers, off
+
+
+class FastDirectionModel(DirectionModel):
+    """The same of fast streams."""
+
+    def __init__(self, attribute, normals, texture):
+        super().__init__(attribute, normals, texture)
+        self.usual = log(attribute.highest)
+
+    def _miss_of_copy(self, _):
+        return self.usual
+
+    def _numbers(self, coder, around):
+        ring, mirrored = around.ring, False
+        if not ring:
+            beside = self._beside(around)
+            expected, near, base = ZERO if beside is None else beside[:3], self.usual, 2
+        else:
+            near, base = cut(sum(self.misses[r] for r in ring), len(ring)), 0
+            expected, mirrored = self._tangent(around) if self.four else (around.surface(), False)
+            if expected == ZERO:
+                expected = self._around(ring)
+        sign = []
+        if self.four:
+            beside = self._beside(around)
+            alone = 7 if beside is not None and beside[3] > 0 else 8
+            sign = self._sign(coder, self._sign_context(ring, mirrored) if ring else alone)
+        numbers, off = self._octahedron(coder, expected, exp2_16(near), base, (0, 0))
+        return numbers + sign, log(off // 2 + 3)
+
+    def _around(self, ring):
+        return shorten(total(self.wedges[r][:3] for r in ring), 24)[0]
+
+    def _tangent(self, around):
+        """Where the first texture coordinates grow along the surface, and whether they are mirrored."""
+        normal = self.normals.wedges[around.wedge] if self.normals else around.surface()
+        whole, turns = ZERO, 0
+        if self.texture:
+            for f in around.faces:
+                gradient, turn = self._gradient(around, f)
+                whole, turns = add(whole, gradient), turns + turn
+        whole, _ = shorten(self._around(around.ring) if whole == ZERO else whole, 24)
+        normal, _ = shorten(normal, 14)
+        square = dot(normal, normal)
+        if square:
+            whole = sub(scaled(whole, square), scaled(normal, dot(whole, normal)))
+        return shorten(whole, 24)[0], turns < 0
 
 
 class TextureModel(AttributeModel):
@@ -341,7 +397,7 @@ class Plane:
         k = len(points)
         self.x, self.y = div(sum(p[0] for p in points), k), div(sum(p[1] for p in points), k)
         self.z = [div(sum(p[2][c] for p in points), k) for c in range(2)]
-        near = [(x - self.x, y - self.y, [self._short(z[c] - self.z[c]) for c in range(2)]) for x, y, z in points]
+        near = [(x - self.x, y - self.y, [self.short(z[c] - self.z[c]) for c in range(2)]) for x, y, z in points]
         xx, xy, yy = sum(x * x for x, _, _ in near), sum(x * y for x, y, _ in near), sum(y * y for _, y, _ in near)
         s = 0
         while (xx + yy) >> s >= self.LIMIT:
@@ -356,10 +412,37 @@ class Plane:
 
     def at(self, x, y, c):
         slope = cut(self.a[c] * (x - self.x) + self.b[c] * (y - self.y), self.det)
-        return self.z[c] + self._short(slope)
+        return self.z[c] + self.short(slope)
 
-    def _short(self, z):
+    def short(self, z):
         return clamp(z, -self.LIMIT, self.LIMIT)
+
+
+class FastTextureModel(TextureModel):
+    """The same of fast streams."""
+
+    def _from_ring(self, coder, around):
+        m = len(around.ring)
+        plane = Plane(self._points(around))
+        for slopes in (plane.a, plane.b):
+            slopes[:] = [clamp(slope, -(1 << 51), 1 << 51) for slope in slopes]
+        offs = (plane.short(16 * self.wedges[r][c] - plane.z[c]) for r in around.ring for c in range(2))
+        base = log(max(16, sum(map(abs, offs)) // m))
+        scale = exp2_16(base + cut(sum(self.misses[r] for r in around.ring), m))
+        numbers, off = [], 3
+        for c in range(2):
+            value = clamp(plane.at(0, 0, c), 16 * self.lowest, 16 * self.highest)
+            numbers.append(self.coder.number(coder, value, scale, c))
+            off += abs(16 * numbers[c] - value) // 2
+        return numbers, log(off) - base
+
+    def _points(self, around):
+        """Those of the ring, by the two coordinates of positions in which the surface is not steepest."""
+        z = steepest(around.surface())
+        x, y = [axis for axis in range(3) if axis != z]
+        away = [sub(around.position(r), around.position(around.wedge)) for r in around.ring]
+        s = max(0, max(width(max(abs(e[x]), abs(e[y]))) for e in away) - 10)
+        return [(e[x] >> s, e[y] >> s, [16 * n for n in self.wedges[r]]) for e, r in zip(away, around.ring)]
 
 
 class WeightModel(AttributeModel):
@@ -417,13 +500,15 @@ class WeightModel(AttributeModel):
 class Attributes:
     """All attributes of a stream: their models, and the order in which a wedge's are coded."""
 
-    def __init__(self, attributes):
+    def __init__(self, attributes, fast):
         models = {}
+        texture_model = FastTextureModel if fast else TextureModel
+        direction_model = FastDirectionModel if fast else DirectionModel
         for attribute in attributes:
             if attribute.coding == NUMBERS:
                 models[attribute] = NumberModel(attribute)
             elif attribute.coding == TEXTURE:
-                models[attribute] = TextureModel(attribute)
+                models[attribute] = texture_model(attribute)
 
         def first(coding, components):
             return next((models[a] for a in attributes if a.coding == coding and a.components == components), None)
@@ -432,7 +517,8 @@ class Attributes:
         for components in (3, 4):
             for attribute in attributes:
                 if attribute.coding == DIRECTIONS and attribute.components == components:
-                    models[attribute] = DirectionModel(attribute, first(DIRECTIONS, 3) if components == 4 else None, texture)
+                    normals = first(DIRECTIONS, 3) if components == 4 else None
+                    models[attribute] = direction_model(attribute, normals, texture)
         sets = []
         for attribute in attributes:
             if attribute.coding == WEIGHTS:

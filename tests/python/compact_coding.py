@@ -123,6 +123,11 @@ def shorten(v, bits):
     return shifted(v, s), s
 
 
+def steepest(v):
+    """The axis in which it is longest, of equal ones the last."""
+    return max(range(3), key=lambda axis: (abs(v[axis]), axis))
+
+
 def unit(v):
     v, _ = shorten(v, 24)
     n = length(v)
@@ -162,8 +167,9 @@ def rounded(x):
 class RangeCoder:
     """Reads the bits of one chunk. `trace`, if given, gets (name of the model, contexts, selector, probability, bit) of each."""
 
-    def __init__(self, data, trace=None):
+    def __init__(self, data, fast=False, trace=None):
         self.data = data
+        self.fast = fast
         self.trace = trace
         self.low = 0
         self.high = 0xFFFFFFFF
@@ -214,7 +220,7 @@ def probability(x):
 
 PROBABILITIES = [probability(x) for x in range(-2815, 2816)]
 ODDS = [min(bisect_left(PROBABILITIES, 16 * k + 8) - 2815, 2815) for k in range(4096)]
-RATES = [131072 // (2 * seen + 3) for seen in range(31)]
+RATES = [131072 // (2 * seen + 3) for seen in range(61)]
 
 
 class Mixer:
@@ -260,6 +266,24 @@ class Bits(Mixer):
         return self.bit(coder, (context,))
 
 
+class Counters:
+    """Bits of a fast stream, each by the counter of its context."""
+
+    def __init__(self, name, size):
+        self.name = name
+        self.one = [32768] * size
+        self.seen = bytearray(size)
+
+    def __call__(self, coder, context):
+        one, seen = self.one[context], self.seen[context]
+        bit = coder.bit(one)
+        if coder.trace:
+            coder.trace(self.name, (context,), 0, one, bit)
+        self.one[context] += ((65535 - one) * RATES[seen]) >> 16 if bit else -((one * RATES[seen]) >> 16)
+        self.seen[context] = min(seen + 1, 60)
+        return bit
+
+
 # Numbers, section 4.3.
 
 STEPS = [5, 11, 18, 26, 36, 48, 64, 86, 118, 170, 256, 450, 1000, 4000]
@@ -275,10 +299,13 @@ class NumberCoder:
         sizes = [2 * nodes * 24, 8 * nodes * 8, 4 * nodes * 16, 4 * nodes * 16, 16 * nodes * 4]
         self.steps = Mixer(name + " steps", sizes, 4 * nodes)
         self.rest = Mixer(name + " rest", [4 * nodes, 24 * nodes], 2)
+        self.counters = Counters(name, 4 * 24 * 20)
 
     def number(self, coder, value, scale, kind=0, hints=(0, 0, 0)):
         scale = max(scale, 1)
         first = (value + 15) >> 4
+        if coder.fast:
+            return self._counted(coder, first, scale, kind)
         fraction = (16 * first - value) >> 1
         large = clamp(cut(log2_16(scale) - 16, 8), 0, 23)
         small = clamp(cut(log2_16(scale) - 32, 8), 0, 7)
@@ -314,6 +341,18 @@ class NumberCoder:
                 upper = coder.raw(1)
             begin, end = (middle, end) if upper else (begin, middle)
             level += 1
+        return first + begin if side else first - 1 - begin
+
+    def _counted(self, coder, first, scale, kind):
+        """The number of a fast stream."""
+        nodes = (24 * kind + clamp(cut(log2_16(scale) - 16, 8), 0, 23)) * 20
+        side = self.counters(coder, nodes)
+        begin, bits, s = 0, clamp(width(scale) - 7, 0, 31), 1
+        while bits < 32 and self.counters(coder, nodes + min(s, 19)):
+            begin += 1 << bits
+            bits += s >= 8
+            s += 1
+        begin += coder.raw(bits)
         return first + begin if side else first - 1 - begin
 
 

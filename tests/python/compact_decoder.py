@@ -82,7 +82,7 @@ def decode(data, trace=None):
         must(checksum(chunk) == entry.checksum, f"chunk {index} has another checksum than the header says")
         try:
             header.check_chunk(index)
-            decoder.decode_chunk(index, RangeCoder(chunk, trace))
+            decoder.decode_chunk(index, RangeCoder(chunk, header.fast, trace))
         except Refused as why:
             raise Refused(f"chunk {index}: {why}") from None
         yield index, decoder

@@ -205,9 +205,10 @@ class Header:
         self._sum_levels()
 
     def _read_grid(self, reader):
-        self.grid_bits, self.lossless = reader.fields("BB")
+        self.grid_bits, flags = reader.fields("BB")
         must(8 <= self.grid_bits <= 16, f"grid of {self.grid_bits} bits")
-        must(self.lossless <= 1, f"lossless is {self.lossless}")
+        must(flags < 4, f"flags are {flags}")
+        self.lossless, self.fast = bool(flags & 1), bool(flags & 2)
         self.origin = reader.fields("fff")
         self.range = reader.field("f")
         ends = [rounded(o + self.range) for o in self.origin]

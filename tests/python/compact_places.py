@@ -1,7 +1,7 @@
 """Sections 7.1 and 9.5 of docs/compact-stream.md: the walk over a level that finds the places of a round."""
 
 from compact_coding import (
-    Bits, Mixer, NumberCoder, bucket, cross, cut, div_each, dot, exp2_16, log2_16, must, scaled, shifted, shorten, square, sub,
+    Bits, Counters, Mixer, NumberCoder, bucket, cross, cut, div_each, dot, exp2_16, log2_16, must, scaled, shifted, shorten, square, sub,
     total, width,
 )  # fmt: skip
 from compact_level import NONE, Place, face_of, next_of, prev_of
@@ -15,6 +15,8 @@ class PlaceModels:
     def __init__(self):
         self.patches = NumberCoder("patches")
         self.borders = Bits("borders", 3)
+        self.fast_faces = Counters("fast faces", 13 * 12)
+        self.fast_edges = Counters("fast edges", 8 * 16)
         self.faces = Mixer("faces", [480, 240, 432, 600, 320, 512, 1280], 30)
         self.edges = Mixer("edges", [1152, 256, 1152, 1024, 1024, 2048, 1440, 13824], 6 * 8 * 3)
 
@@ -176,21 +178,23 @@ class Walk:
         level = self.level
         halves = range(3 * f, 3 * f + 3)
         corners = level.corner_vertex[3 * f : 3 * f + 3]
-        flats = [self._flat(h) for h in halves]
         plain, patched = self._beyond_counts(halves)
+        lengths = [self._length(h) for h in halves]
+        shape = bucket(max(lengths) - cut(sum(lengths), 3), 0, 4, 12)
+        if self.coder.fast:
+            return self.models.fast_faces(self.coder, (plain + 4 * patched) * 12 + shape)
+        flats = [self._flat(h) for h in halves]
         state = (0, 4, 7, 9)[plain] + patched
         degrees = sum(min(self.degree[v], 20) for v in corners)
         new = sum(min(self.deg[v], 64) for v in corners)
         touched = sum(self.patches[v] > 0 for v in corners)
         tight = min(4, *[self.open[v] for v in corners])
-        lengths = [self._length(h) for h in halves]
         beyond = [b for b in map(level.beyond, halves) if b != NONE]
         ages = sum(map(self._age, beyond))
         seams = min(sum(map(self._seam, halves)), 2)
         flattest = max([flat for h, flat in zip(halves, flats) if self._is_open(level.beyond(h))] + [0])
         areas = sum(self.areas[b] for b in beyond)
         relative = bucket(self.areas[f] - cut(areas, len(beyond)), -48, 8, 12) if beyond else 0
-        shape = bucket(max(lengths) - cut(sum(lengths), 3), 0, 4, 12)
         degree = bucket(degrees, 9, 1, 20)
         others = min(ages // 3, 3)
         age, size = self._age(f), self._size(f)
@@ -208,16 +212,18 @@ class Walk:
     def _goes_on(self, h, polygon, first, crossed):
         level = self.level
         t = level.twins[h]
-        f, b, c, d = face_of(h), face_of(t), level.apex(t), level.apex(h)
-        a, e = level.begin(h), level.to(h)
         size = len(polygon)
-        plain, patched = self._beyond_counts((next_of(t), prev_of(t)))
-        pair = 3 * plain + patched
         corners = min(size - 3, 7)
-        seam = 2 * min(crossed, 2) + self._seam(h)
         length = self._length(h)
         lengths = sum(map(self._length, polygon)) + self._length(next_of(t)) + self._length(prev_of(t)) - length
         relative = bucket(length - cut(lengths, size + 1), -32, 5, 16)
+        if self.coder.fast:
+            return self.models.fast_edges(self.coder, corners * 16 + relative)
+        f, b, c, d = face_of(h), face_of(t), level.apex(t), level.apex(h)
+        a, e = level.begin(h), level.to(h)
+        plain, patched = self._beyond_counts((next_of(t), prev_of(t)))
+        pair = 3 * plain + patched
+        seam = 2 * min(crossed, 2) + self._seam(h)
         across = log2_16(square(sub(level.positions[d], level.positions[c])))
         flip = bucket(across - length, -40, 5, 16)
         angle, far = self._angle_and_far(polygon, a, e, c)

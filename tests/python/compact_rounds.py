@@ -9,7 +9,8 @@ from compact_level import (
     CLOSED, LONE, MOVED, NONE, OPEN, CoarseFace, Level, Sector, Sectors, face_of, give_slots, next_of, write_star,
 )  # fmt: skip
 from compact_places import PlaceModels, Walk
-from compact_shape import MoveShapes, Ring, VertexShapes
+from compact_fast_shape import FastMoves, FastVertices
+from compact_shape import MoveShapes, VertexShapes
 
 WEDGE_LIMIT = 65536  # of a record
 
@@ -348,10 +349,10 @@ class Decoder:
         self.flags = Bits("flags", 4)
         self.places = PlaceModels()
         self.wedges = WedgeModels()
-        self.shapes = VertexShapes(header.grid_highest)
-        self.moves = MoveShapes(header.grid_highest)
+        self.shapes = (FastVertices if header.fast else VertexShapes)(header.grid_highest)
+        self.moves = (FastMoves if header.fast else MoveShapes)(header.grid_highest)
         self.loose = LooseRecords(header, self.wedges)
-        self.attributes = Attributes(header.attributes)
+        self.attributes = Attributes(header.attributes, header.fast)
         self.rests = Rests(header, self.attributes)
         self.errors = Errors(header)
         self.step = self.old_step = 0
@@ -575,8 +576,9 @@ class Round:
         for v, places in vertices:
             level.positions[v] = self._guess(places[0])
         for v, places in vertices:
-            ring = Ring(level, [3 * f + 1 for f in places[0].star], places[0].closed, self.normals)
-            level.positions[v] = decoder.shapes.position(self.coder, v, ring, decoder.step)
+            halves = [3 * f + 1 for f in places[0].star]
+            around = level, halves, places[0].closed
+            level.positions[v] = decoder.shapes.position(self.coder, v, around, self.normals, decoder.step)
 
     def _guess(self, place):
         positions, corners = self.level.positions, self.level.corner_vertex

@@ -198,7 +198,9 @@ class VertexShapes:
     def note_loose(self, v):
         self.misses[v] = UNKNOWN
 
-    def position(self, coder, v, ring, step):
+    def position(self, coder, v, around, normals, step):
+        """Where vertex v is; `around` has the level, its outer half-edges, and whether they are closed."""
+        ring = Ring(*around, normals)
         found = [self.misses[x] for x in ring.corners + ring.beyond if x in self.misses]
         around = mean_of(found) if found else UNKNOWN
         shift = self.shifts[clamp(ring.size - 4, 0, 3) if ring.closed else 0]
@@ -252,7 +254,7 @@ class MoveShapes:
         """Where vertex v goes, seen from half-edge `half` (NONE: it has no faces), from grid 2^old to 2^new."""
         start = scaled(level.positions[v], 16)
         if half == NONE:
-            return self._bare(coder, start, old, new)
+            return bare_position(self.bare, coder, start, old, new, self.grid_highest)
         ring = Ring(level, *outer_ring(level, half), normals)
         found = [self.moved[x] for x in ring.corners if x in self.moved]
         around = mean_of([miss for miss, _ in found]) if found else None
@@ -273,11 +275,13 @@ class MoveShapes:
         self.moved[v] = miss, way
         return position
 
-    def _bare(self, coder, start, old, new):
-        numbers = [self.bare.number(coder, c >> new, max(1, (16 << old) >> new)) for c in start]
-        position = tuple(number << new for number in numbers)
-        must(all(0 <= c <= self.grid_highest for c in position), "a vertex moves off the grid")
-        return position
+
+def bare_position(numbers, coder, start, old, new, grid_highest):
+    """Where a vertex without faces moves to."""
+    found = [numbers.number(coder, c >> new, max(1, (16 << old) >> new)) for c in start]
+    position = tuple(number << new for number in found)
+    must(all(0 <= c <= grid_highest for c in position), "a vertex moves off the grid")
+    return position
 
 
 def outer_ring(level, g):

@@ -85,6 +85,23 @@ TEST_CASE("inspect lists a stream's chunks") {
   CHECK_THAT(run_program({"inspect", stream}).out, contains("bytes so far"));
 }
 
+TEST_CASE("streams are coded small or fast, as asked, and inspect says which") {
+  const ScratchDirectory folder;
+  const std::string small = build_ball(folder), fast = (folder / "fast.lods").string();
+  REQUIRE(run_program({"build", (folder / "ball.obj").string(), fast, "--stream-coding", "fast", "-q"}).exit_code == 0);
+  StreamReader one, other;
+  REQUIRE(one.append(read_file(small).value()));
+  REQUIRE(other.append(read_file(fast).value()));
+  CHECK(one.mesh().positions == other.mesh().positions);
+  CHECK(std::filesystem::file_size(fast) > std::filesystem::file_size(small));
+  CHECK_THAT(run_program({"inspect", small, "--stream"}).out, contains("version 3.0, small coding"));
+  CHECK_THAT(run_program({"inspect", fast, "--stream"}).out, contains("version 3.1, fast coding"));
+  const auto json = nlohmann::json::parse(run_program({"inspect", fast, "--stream", "--json"}).out);
+  CHECK(json["streams"][0]["version"] == "3.1");
+  CHECK(json["streams"][0]["coding"] == "fast");
+  CHECK(run_program({"build", small, fast, "--stream-coding", "quick", "-q"}).exit_code == 1);
+}
+
 TEST_CASE("inspect --stream tells what parts and rounds of a stream take, and they add up to the file") {
   const ScratchDirectory folder;
   const std::string stream = build_ball(folder), suzi = (folder / "suzi.glb").string();

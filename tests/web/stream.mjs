@@ -27,13 +27,14 @@ mkdirSync(folder, { recursive: true });
 function buildStreams() {
   const wanted = [
     [join(repository, 'demo', 'suzi.glb')],
+    [join(repository, 'demo', 'suzi.glb'), 'fast'],
     [join(options.models, 'paper', 'stanford-bunny.obj')],
     [join(options.models, 'mesh', 'spot', 'spot_triangulated.obj')],
   ];
-  return wanted.flatMap(([model]) => {
+  return wanted.flatMap(([model, coding = 'small']) => {
     if (!existsSync(model)) return skip(model) ?? [];
-    const path = join(folder, `${basename(model).replace(/\..*/, '')}.lods`);
-    execFileSync(options.program, ['build', model, '-o', path, '-q'], { stdio: ['ignore', 'ignore', 'ignore'] });
+    const path = join(folder, `${basename(model).replace(/\..*/, '')}${coding === 'small' ? '' : `-${coding}`}.lods`);
+    execFileSync(options.program, ['build', model, '-o', path, '-q', '--stream-coding', coding], { stdio: ['ignore', 'ignore', 'ignore'] });
     return [path];
   });
 }

@@ -118,7 +118,10 @@ std::vector<CompactOptions> stream_options(const Scene& scene, const BuildOption
   const bool is_rounded = is_drawn || (!storage.position_grid && storage.compression != Compression::None);
   std::vector<CompactOptions> options = compact_options(scene, storage);
   const std::vector<bool> fit = fit_compact_streams(scene, storage);
-  for (std::size_t i = 0; i < options.size(); ++i) options[i].lossless = build.lossless || !is_rounded || !fit[i];
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    options[i].coding = build.stream_coding;
+    options[i].lossless = build.lossless || !is_rounded || !fit[i];
+  }
   return options;
 }
 

@@ -5,6 +5,7 @@
 
 #include <lodestone/core/effort.h>
 #include <lodestone/io/asset.h>
+#include <lodestone/io/compact_stream.h>
 #include <lodestone/lod/simplify_options.h>
 #include <lodestone/pipeline/importance.h>
 #include <lodestone/pipeline/level_target.h>
@@ -52,6 +53,7 @@ struct BuildOptions {
   /// streams of what needs more than 16 bits for a position and, with all levels in one file, of what is not compressed
   /// or has a grid of a given step.
   bool lossless = false;
+  CompactCoding stream_coding = CompactCoding::Small;
   bool strict = false;       ///< stop before anything is encoded where a target cannot be met
   bool keep_levels = false;  ///< keep the levels as the files have them: see `BuildResult::decoded`
   /// Of a stream alone: what its faces' materials are called, by number of the primitive; empty: as those.
