@@ -99,13 +99,13 @@ TEST_CASE("what reaches over a border, or a hole, has no bound by a patch") {
   const Mesh plane = mesh_of(grid(12, 0, 1));
   const Box box = bounding_box(plane);
   const double width = box.high.x - box.low.x, cell = width / 12, slack = 1e-6 * width;
-  std::vector<Index> kept;  // all but one face in the middle
+  const auto gone = static_cast<Index>(plane.face_count() / 2 + 7);  // a face in the middle
+  std::vector<Index> kept;
   for (Index f = 0; f < plane.face_count(); ++f)
-    if (f != plane.face_count() / 2 + 7) kept.push_back(f);
+    if (f != gone) kept.push_back(f);
   const Mesh holed = pick_faces(plane, kept);
-  const TriangleCorners missing = {plane.corner_position(3 * (plane.face_count() / 2 + 7)),
-                                   plane.corner_position(3 * (plane.face_count() / 2 + 7) + 1),
-                                   plane.corner_position(3 * (plane.face_count() / 2 + 7) + 2)};
+  const TriangleCorners missing = {plane.corner_position(3 * gone), plane.corner_position(3 * gone + 1),
+                                   plane.corner_position(3 * gone + 2)};
   const std::vector<Index> opposite = detail::opposite_corners(holed);
   PatchBound patch(holed, opposite);
   const Vec3 middle = (missing[0] + missing[1] + missing[2]) * (1.0 / 3);
