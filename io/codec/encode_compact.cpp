@@ -27,11 +27,11 @@ using namespace detail;
 // How much of a round is done once its places, or its positions, are coded.
 constexpr double kPlacesShare = 0.4, kPositionsShare = 0.7;
 
-// A chunk ends with the first round after so many bytes, or so large a share of what came before it: what is there shows
-// as its last whole chunk, and each costs twenty bytes.
+// A chunk ends with the first round after so many bytes, or so large a share of what came before it: what is there
+// shows as its last whole chunk, and each costs twenty bytes.
 constexpr double kLeastChunkBytes = 768;
 constexpr double kLeastChunkShare = 0.1;
-constexpr double kLeastStageBytes = 64;  // the same where a placed level is reached
+constexpr double kLeastStageBytes = 64;  // the same of the first one where a placed level is reached; of others, any
 
 auto unsupported(const std::string& message) { return fail(ErrorCode::Unsupported, "compact stream: " + message); }
 
@@ -718,7 +718,7 @@ Result<void> CompactEncoder::write_rounds() {
   for (Index first = 0, end = 0; first < record_count; first = end) {
     const double bytes = coder_.bits() / 8;
     const bool is_long = bytes >= std::max(kLeastChunkBytes, kLeastChunkShare * static_cast<double>(body_.size())) ||
-                         (begins_stage(first) && bytes >= kLeastStageBytes);
+                         (begins_stage(first) && bytes >= (header_.chunks.empty() ? kLeastStageBytes : 1));
     if (is_long && levels_.may_end_chunk() && walked <= kMostWalked * levels_.size()) end_chunk();
     walked += levels_.size();
     if (walked > most_walked)
