@@ -225,10 +225,10 @@ std::vector<CompactFile> compact_files() {
       {"empty", "no vertices", [](CompactCoding coding) { return encoded(coding, simplified(empty_soup()), 8); }},
   };
   std::vector<CompactFile> files;
-  for (const auto& [folder, coding] :
-       {std::pair("compact-3.0", CompactCoding::Small), std::pair("compact-3.1", CompactCoding::Fast)})
+  for (const CompactCoding coding : {CompactCoding::Small, CompactCoding::Fast})
     for (const Shape& shape : shapes)
-      files.push_back({folder, shape.name, shape.what, [=, encode = shape.encode] { return encode(coding); }});
+      files.push_back({coding == CompactCoding::Small ? "compact-3.0" : "compact-3.1", shape.name, shape.what,
+                       [coding, encode = shape.encode] { return encode(coding); }});
   return files;
 }
 
