@@ -91,7 +91,8 @@ Hints tangents_of(const ElementPlace& place, const Vec3i& around) {
 FittedDirectionCoder::FittedDirectionCoder(const AttributeSpec& spec)
     : DirectionCoder(spec),
       pulls_({0, 0, 0, 0}, 1 << 17),
-      size_({0, kHalfWeight, kQuarterWeight, kQuarterWeight}, 1 << 14) {}
+      size_({0, kHalfWeight, kQuarterWeight, kQuarterWeight}, 1 << 14),
+      misses_(kUsualDirectionMiss) {}
 
 Vec3i FittedDirectionCoder::direction(Index wedge) const {
   return unit({number(wedge, 0), number(wedge, 1), number(wedge, 2)});
@@ -103,14 +104,9 @@ Vec3i FittedDirectionCoder::mean_of_ring(const ElementPlace& place) const {
   return unit(sum);
 }
 
-void FittedDirectionCoder::note_miss(Index wedge, int miss) {
-  if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualDirectionMiss);
-  misses_[wedge] = static_cast<std::int16_t>(miss);
-}
-
+/// Likely as far off as the wedge before it.
 void FittedDirectionCoder::pass(const ElementPlace& place) {
-  note_miss(place.wedge,
-            place.wedge > 0 && place.wedge <= misses_.size() ? misses_[place.wedge - 1] : kUsualDirectionMiss);
+  misses_.note(place.wedge, place.wedge > 0 ? misses_.of(place.wedge - 1) : misses_.usual());
 }
 
 void DirectionCoder::code_sign(BitCoder& coder, const ElementPlace& place, bool is_mirrored,
@@ -172,7 +168,7 @@ bool FittedDirectionCoder::code_near(BitCoder& coder, const Vec3i& expected, int
 bool FittedDirectionCoder::code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) {
   if (place.ring.empty()) {
     if (numbers.size() > 3) code_sign(coder, place, false, numbers);
-    note_miss(place.wedge, kUsualDirectionMiss);
+    misses_.note(place.wedge, misses_.usual());
     const Vec3i near = place.beside != kNoIndex ? direction(place.beside) : Vec3i{};
     return code_near(coder, near, 16 * 12, 1, numbers);
   }
@@ -181,10 +177,9 @@ bool FittedDirectionCoder::code_element(BitCoder& coder, const ElementPlace& pla
   if (numbers.size() > 3) code_sign(coder, place, hints.is_mirrored, numbers);
   const Vec3i& own = hints.own;
   const auto count = static_cast<std::int64_t>(place.ring.size());
-  std::int64_t miss_sum = 0, turn = 0, off = 0;
+  std::int64_t turn = 0, off = 0;
   for (const Index other : place.ring) {
     const Vec3i there = direction(other);
-    miss_sum += other < misses_.size() ? misses_[other] : kUsualDirectionMiss;
     turn += length_of(there - around);
     off += length_of(there - (numbers.size() > 3 ? own : place.normals[other]));
   }
@@ -199,7 +194,7 @@ bool FittedDirectionCoder::code_element(BitCoder& coder, const ElementPlace& pla
   expected = unit(expected);
   const int log_one = 64;
   const Traits::Features traits = {log_one,
-                                   miss_sum / count,
+                                   misses_.around(place),
                                    log_of(length_of(around - own)),
                                    log_of(hints.spread),
                                    log_of(turn / count),
@@ -215,7 +210,7 @@ bool FittedDirectionCoder::code_element(BitCoder& coder, const ElementPlace& pla
   const int miss = log_of(length_of(found - expected) + (1 << kUnitBits) / (4 * spec().highest()));
   size_.add(traits, miss);
   size_.end_sample();
-  note_miss(place.wedge, miss);
+  misses_.note(place.wedge, miss);
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "codec/attribute_coder.h"
 #include "codec/online_fit.h"
+#include "codec/wedge_misses.h"
 
 namespace lodestone::detail {
 
@@ -47,11 +48,10 @@ class FittedDirectionCoder final : public DirectionCoder {
   Vec3i mean_of_ring(const ElementPlace& place) const;
   bool code_near(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
                  std::span<std::int32_t> numbers);
-  void note_miss(Index wedge, int miss);
 
   Pulls pulls_;
   Traits size_;
-  std::vector<std::int16_t> misses_;  // by wedge: sixteenths of the logarithm of the error
+  WedgeMisses misses_;
 };
 
 }  // namespace lodestone::detail

@@ -28,17 +28,6 @@ Vec3i surface_of(const ElementPlace& place) {
 
 }  // namespace
 
-void WedgeMisses::note(Index wedge, int miss) {
-  if (misses_.size() <= wedge) misses_.resize(wedge + std::size_t{1}, static_cast<std::int16_t>(usual_));
-  misses_[wedge] = static_cast<std::int16_t>(miss);
-}
-
-int WedgeMisses::around(const ElementPlace& place) const {
-  int sum = 0;
-  for (const Index other : place.ring) sum += other < misses_.size() ? misses_[other] : usual_;
-  return place.ring.empty() ? usual_ : sum / static_cast<int>(place.ring.size());
-}
-
 FastDirectionCoder::FastDirectionCoder(const AttributeSpec& spec)
     : DirectionCoder(spec), misses_(log_of(spec.highest())) {}
 

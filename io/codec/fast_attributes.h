@@ -6,22 +6,9 @@
 
 #include "codec/attribute_coder.h"
 #include "codec/direction_coder.h"
+#include "codec/wedge_misses.h"
 
 namespace lodestone::detail {
-
-/// How far predictions were off, by wedge: sixteenths of logarithms.
-class WedgeMisses {
- public:
-  explicit WedgeMisses(int usual) : usual_(usual) {}
-  int usual() const { return usual_; }
-  void note(Index wedge, int miss);
-  /// The mean of a ring's.
-  int around(const ElementPlace& place) const;
-
- private:
-  int usual_;
-  std::vector<std::int16_t> misses_;
-};
 
 /// Directions near what the surface tells: its normals, and where texture coordinates grow on it.
 class FastDirectionCoder final : public DirectionCoder {

@@ -32,20 +32,8 @@ Vec3i normal_of(const ElementPlace& place) {
 FittedTextureCoder::FittedTextureCoder(const AttributeSpec& spec)
     : ElementCoder(spec),
       pulls_{Pulls({kWholeWeight, 0, 0}, 1 << 17), Pulls({kWholeWeight, 0, 0}, 1 << 17)},
-      size_{Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14), Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14)} {}
-
-void FittedTextureCoder::note_miss(Index wedge, int miss) {
-  if (misses_.size() <= wedge) misses_.resize(wedge + 1, kUsualTextureMiss);
-  misses_[wedge] = static_cast<std::int16_t>(miss);
-}
-
-void FittedTextureCoder::pass(const ElementPlace& place) { note_miss(place.wedge, kUsualTextureMiss); }
-
-int FittedTextureCoder::miss_around(const ElementPlace& place) const {
-  std::int64_t sum = 0;
-  for (const Index other : place.ring) sum += other < misses_.size() ? misses_[other] : kUsualTextureMiss;
-  return static_cast<int>(sum / static_cast<std::int64_t>(place.ring.size()));
-}
+      size_{Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14), Traits({0, kHalfWeight, 0, kHalfWeight}, 1 << 14)},
+      misses_(kUsualTextureMiss) {}
 
 void FittedTextureCoder::add_point(const ElementPlace& place, const Vec3i& along_x, const Vec3i& along_y, Index wedge) {
   const Vec3i d = place.positions[place.wedges.vertex(wedge)] - place.positions[place.wedges.vertex(place.wedge)];
@@ -183,7 +171,7 @@ bool FittedTextureCoder::code_alone(BitCoder& coder, const ElementPlace& place, 
     if (coded < lowest || coded > highest) return false;
     numbers[c] = static_cast<std::int32_t>(coded);
   }
-  note_miss(place.wedge, kUsualTextureMiss);
+  misses_.note(place.wedge, misses_.usual());
   return true;
 }
 
@@ -199,7 +187,7 @@ bool FittedTextureCoder::code_element(BitCoder& coder, const ElementPlace& place
     for (std::size_t i = 0; i < kPulls; ++i) features[c][i] = guess.pulls[i][c] * kOne / guess.radius;
     expected[c] = guess.mean[c] + pulls.predict(features[c]) * guess.radius / kOne;
   }
-  const int log_radius = log_of(guess.radius), around = miss_around(place);
+  const int log_radius = log_of(guess.radius), around = misses_.around(place);
   const auto relative = [&](std::int64_t x) { return log_of(x) - log_radius; };
   const auto across = [&](std::size_t i) { return std::abs(guess.pulls[i][0]) + std::abs(guess.pulls[i][1]); };
   const Traits::Features traits = {
@@ -218,7 +206,7 @@ bool FittedTextureCoder::code_element(BitCoder& coder, const ElementPlace& place
   const int miss = std::clamp(log_of(off) - log_radius, -1000, 1000);
   size.add(traits, miss);
   size.end_sample();
-  note_miss(place.wedge, miss);
+  misses_.note(place.wedge, miss);
   return true;
 }
 

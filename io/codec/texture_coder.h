@@ -6,6 +6,7 @@
 
 #include "codec/attribute_coder.h"
 #include "codec/online_fit.h"
+#include "codec/wedge_misses.h"
 
 namespace lodestone::detail {
 
@@ -16,7 +17,7 @@ class FittedTextureCoder final : public ElementCoder {
 
  protected:
   bool code_element(BitCoder& coder, const ElementPlace& place, std::span<std::int32_t> numbers) override;
-  void pass(const ElementPlace& place) override;
+  void pass(const ElementPlace& place) override { misses_.note(place.wedge, misses_.usual()); }
 
  private:
   static constexpr int kPulls = 3;
@@ -45,13 +46,11 @@ class FittedTextureCoder final : public ElementCoder {
   void add_point(const ElementPlace& place, const Vec3i& along_x, const Vec3i& along_y, Index wedge);
   Guess look();
   void fit_plane(std::size_t count, Guess& guess) const;
-  int miss_around(const ElementPlace& place) const;
-  void note_miss(Index wedge, int miss);
 
   NumberCoder numbers_, alone_;
   std::array<Pulls, 2> pulls_;  // by whether the sector is open
   std::array<Traits, 2> size_;
-  std::vector<std::int16_t> misses_;  // by wedge: sixteenths of the logarithm of the error over the radius
+  WedgeMisses misses_;  // over the radius
 
   // Of the wedge at hand.
   std::vector<Point> points_;  // the ring's, then what lies beyond
