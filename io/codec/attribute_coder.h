@@ -33,6 +33,21 @@ struct ElementPlace {
   const ElementCoder* texture = nullptr;  ///< the first texture coordinates, if any; they are coded before directions
   const ElementCoder* normal = nullptr;   ///< the first normals, if any; they are coded before directions with a sign
   Index beside = kNoIndex;  ///< without a ring: a wedge that is likely to have about the same; kNoIndex for none
+
+  /// The edges of a face that leave its first corner.
+  std::array<Vec3i, 2> edges(Index face) const {
+    const Vec3i& p = positions[mesh.from(3 * face)];
+    return {positions[mesh.from(3 * face + 1)] - p, positions[mesh.from(3 * face + 2)] - p};
+  }
+  /// The sum of the faces' normals, by area.
+  Vec3i area() const {
+    Vec3i sum;
+    for (const Index face : faces) {
+      const auto [a, b] = edges(face);
+      sum = sum + cross(a, b);
+    }
+    return sum;
+  }
 };
 
 /// The numbers of an attribute so far, and the models that code more.

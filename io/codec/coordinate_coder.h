@@ -16,6 +16,25 @@ struct Miss {
   int tangent = 0;
 };
 
+/// Adds up how wrong predictions were.
+class MissSum {
+ public:
+  void add(const Miss& miss) {
+    normal_ += miss.normal;
+    tangent_ += miss.tangent;
+    ++count_;
+  }
+  int count() const { return count_; }
+  /// None of none.
+  std::optional<Miss> mean() const {
+    if (count_ == 0) return std::nullopt;
+    return Miss{normal_ / count_, tangent_ / count_};
+  }
+
+ private:
+  int normal_ = 0, tangent_ = 0, count_ = 0;
+};
+
 /// How wrong a prediction was, over the ring's radius. `residual`: sixteenths of a step.
 Miss miss_of(const Vec3i& residual, const Ring& ring);
 

@@ -31,9 +31,7 @@ Hints normals_of(const ElementPlace& place) {
   hints.own = place.normals[place.wedge];
   Vec3i even, by_angle;
   for (const Index face : place.faces) {
-    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
-    const Vec3i a = place.positions[place.mesh.from(3 * face + 1)] - p;
-    const Vec3i b = place.positions[place.mesh.from(3 * face + 2)] - p;
+    const auto [a, b] = place.edges(face);
     const Vec3i n = unit(cross(a, b));
     even = even + n;
     by_angle = by_angle + n * (length_of(unit(a) - unit(b)) >> 4);
@@ -61,23 +59,10 @@ Hints tangents_of(const ElementPlace& place, const Vec3i& around) {
   hints.own = hints.even = hints.third = hints.surface_around;
   if (place.texture == nullptr) return hints;
   Vec3i sum, even;
-  std::int64_t turns = 0;
-  for (const Index face : place.faces) {
-    const auto at = [&](Index corner, std::size_t c) {
-      return std::int64_t{place.texture->numbers(place.mesh.wedge(3 * face + corner))[c]};
-    };
-    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
-    const Vec3i a = place.positions[place.mesh.from(3 * face + 1)] - p;
-    const Vec3i b = place.positions[place.mesh.from(3 * face + 2)] - p;
-    const std::int64_t au = at(1, 0) - at(0, 0), av = at(1, 1) - at(0, 1);
-    const std::int64_t bu = at(2, 0) - at(0, 0), bv = at(2, 1) - at(0, 1);
-    const int turn = au * bv > bu * av ? 1 : -1;
-    const Vec3i tangent = (a * bv - b * av) * turn;
-    sum = sum + tangent;
-    even = even + unit(tangent);
-    turns += turn;
-  }
-  hints.is_mirrored = turns < 0;
+  hints.is_mirrored = visit_growth(place, [&](const Vec3i& growth) {
+    sum = sum + growth;
+    even = even + unit(growth);
+  });
   if (sum == Vec3i{}) return hints;
   hints.own = on_surface(unit(sum));
   hints.even = on_surface(unit(even));
@@ -123,9 +108,7 @@ bool DirectionCoder::code_point(BitCoder& coder, const Vec3i& expected, NumberCo
                                 std::span<std::int32_t> numbers) {
   const std::int64_t size = spec().highest();
   const std::int64_t sum = std::abs(expected.x) + std::abs(expected.y) + std::abs(expected.z);
-  int top = 2;
-  for (const int c : {1, 0})
-    if (std::abs(expected[c]) > std::abs(expected[top])) top = c;
+  const int top = longest_axis(expected);
   const Vec3i point = sum == 0 ? Vec3i{0, 0, 16 * size} : expected * (16 * size) / sum;
   std::int64_t rest = size;
   off_ = 0;

@@ -10,6 +10,25 @@
 
 namespace lodestone::detail {
 
+/// Calls `visit(growth)` for each face of a wedge: where the first texture coordinate grows on it, of any length. True
+/// where texture coordinates run the other way round on most. Pre: there are some.
+template <class Visit>
+bool visit_growth(const ElementPlace& place, const Visit& visit) {
+  int turns = 0;
+  for (const Index face : place.faces) {
+    const auto at = [&](Index corner, std::size_t c) {
+      return std::int64_t{place.texture->numbers(place.mesh.wedge(3 * face + corner))[c]};
+    };
+    const auto [a, b] = place.edges(face);
+    const std::int64_t au = at(1, 0) - at(0, 0), av = at(1, 1) - at(0, 1);
+    const std::int64_t bu = at(2, 0) - at(0, 0), bv = at(2, 1) - at(0, 1);
+    const int turn = au * bv > bu * av ? 1 : -1;
+    visit((a * bv - b * av) * turn);
+    turns += turn;
+  }
+  return turns < 0;
+}
+
 /// Codes directions: points of an octahedron.
 class DirectionCoder : public ElementCoder {
  protected:

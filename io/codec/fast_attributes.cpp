@@ -14,14 +14,9 @@ constexpr int kUsualFastTextureMiss = -32;
 constexpr std::int64_t kMostFastOff = 1 << 20;  // from the mean, sixteenths
 constexpr std::int64_t kMostSlope = std::int64_t{1} << 51;
 
-/// The sum of a wedge's faces' normals, by area; not longer than 2^24.
+/// The surface's normal at a wedge, by area; not longer than 2^24.
 Vec3i surface_of(const ElementPlace& place) {
-  Vec3i sum;
-  for (const Index face : place.faces) {
-    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
-    sum = sum +
-          cross(place.positions[place.mesh.from(3 * face + 1)] - p, place.positions[place.mesh.from(3 * face + 2)] - p);
-  }
+  Vec3i sum = place.area();
   shorten(sum, 24);
   return sum;
 }
@@ -46,22 +41,7 @@ Vec3i FastDirectionCoder::tangent(const ElementPlace& place, bool& is_mirrored) 
     const std::span<const std::int32_t> n = place.normal->numbers(place.wedge);
     normal = {n[0], n[1], n[2]};
   }
-  int turns = 0;
-  for (const Index face : place.faces) {
-    if (place.texture == nullptr) break;
-    const auto at = [&](Index corner, std::size_t c) {
-      return std::int64_t{place.texture->numbers(place.mesh.wedge(3 * face + corner))[c]};
-    };
-    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
-    const Vec3i a = place.positions[place.mesh.from(3 * face + 1)] - p;
-    const Vec3i b = place.positions[place.mesh.from(3 * face + 2)] - p;
-    const std::int64_t au = at(1, 0) - at(0, 0), av = at(1, 1) - at(0, 1);
-    const std::int64_t bu = at(2, 0) - at(0, 0), bv = at(2, 1) - at(0, 1);
-    const int turn = au * bv > bu * av ? 1 : -1;
-    sum = sum + (a * bv - b * av) * turn;
-    turns += turn;
-  }
-  is_mirrored = turns < 0;
+  is_mirrored = place.texture != nullptr && visit_growth(place, [&](const Vec3i& growth) { sum = sum + growth; });
   if (sum == Vec3i{}) sum = around(place);
   shorten(sum, 24);
   shorten(normal, 14);
@@ -91,8 +71,7 @@ FastTextureCoder::FastTextureCoder(const AttributeSpec& spec) : ElementCoder(spe
 
 void FastTextureCoder::gather(const ElementPlace& place) {
   const Vec3i n = surface_of(place);
-  const std::int64_t steep = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  const int z = steep == std::abs(n.z) ? 2 : steep == std::abs(n.y) ? 1 : 0, x = z == 0 ? 1 : 0, y = 3 - z - x;
+  const int z = longest_axis(n), x = z == 0 ? 1 : 0, y = 3 - z - x;
   const Vec3i& own = place.positions[place.wedges.vertex(place.wedge)];
   points_.clear();
   std::uint64_t largest = 0;

@@ -25,11 +25,6 @@ Vec3i mean_of(const Vec3i& sum, std::int64_t count) {
   return {sum.x * share >> (kShareBits - 4), sum.y * share >> (kShareBits - 4), sum.z * share >> (kShareBits - 4)};
 }
 
-int longest_axis(const Vec3i& v) {
-  const std::int64_t x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
-  return x > y && x > z ? 0 : y > z ? 1 : 2;
-}
-
 /// A quarter of the way to a plane that is `distance` times the normal's length away.
 Vec3i towards_plane(Vec3i normal, std::int64_t distance) {
   const int shift = shorten(normal, 16);
@@ -38,20 +33,6 @@ Vec3i towards_plane(Vec3i normal, std::int64_t distance) {
   const std::int64_t share = cut(cut(distance >> shift, 38) * (1 << 24) / square, 44);
   return {normal.x * share >> 26, normal.y * share >> 26, normal.z * share >> 26};
 }
-
-/// Means of misses, where there are any.
-class MissSum {
- public:
-  void add(const Miss& miss) {
-    normal_ += miss.normal;
-    tangent_ += miss.tangent;
-    ++count_;
-  }
-  Miss mean_or(const Miss& usual) const { return count_ == 0 ? usual : Miss{normal_ / count_, tangent_ / count_}; }
-
- private:
-  int normal_ = 0, tangent_ = 0, count_ = 0;
-};
 
 }  // namespace
 
@@ -106,7 +87,7 @@ void FastShapes::expect(const Around& around) {
 
   const std::int64_t steepest = area[expected_.axis];
   const std::int64_t lift = steepest == 0 ? 0 : dot(pull, area) / steepest;
-  const Miss usual = misses.mean_or(kUsualMiss);
+  const Miss usual = misses.mean().value_or(kUsualMiss);
   const int normal = (3 * usual.normal + log_of(std::abs(lift) + 3) - log_radius_) / 4;
   expected_.size = {std::clamp(normal + log_radius_, 16, 320), std::clamp(usual.tangent + log_radius_, 16, 320)};
 }
@@ -154,7 +135,7 @@ bool FastShapes::code_moved(BitCoder& coder, const Around& around, Index vertex,
   if (!around.closed) add_miss(mesh.to(around.outer.back()));
   shorten(area, 28);
   const int usual = 16 * from() + 40;
-  const Miss size = misses.mean_or({usual, usual});
+  const Miss size = misses.mean().value_or(Miss{usual, usual});
   expected_ = {around.positions[vertex] * 16,
                area,
                longest_axis(area),

@@ -78,6 +78,11 @@ inline int shorten(Vec3i& v, int bits) {
   v = {v.x >> shift, v.y >> shift, v.z >> shift};
   return shift;
 }
+/// Returns the axis in which a vector is longest, of those alike the last.
+inline int longest_axis(const Vec3i& v) {
+  const std::int64_t x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+  return x > y && x > z ? 0 : y > z ? 1 : 2;
+}
 inline std::uint64_t squared(const Vec3i& a) { return static_cast<std::uint64_t>(dot(a, a)); }
 
 }  // namespace lodestone::detail

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 namespace lodestone::detail {
+
 MoveCoder::MoveCoder()
     : shift_({0, 0, 0, 0}, {0, 0, 0, 0}, 1 << 17),
       normal_size_({0, kHalfWeight, 0, kQuarterWeight, 0, 0}, 1 << 14),
@@ -16,19 +17,15 @@ void MoveCoder::start(std::size_t vertex_count) {
 
 /// How well the moves of vertices around were predicted.
 void MoveCoder::find_misses(const Ring& ring) {
-  Miss sum;
+  MissSum sum;
   Vec3i went;
-  int count = 0;
   for (const Index corner : ring.corners()) {
     if (corner >= misses_.size() || !misses_[corner]) continue;
-    sum.normal += misses_[corner]->normal;
-    sum.tangent += misses_[corner]->tangent;
+    sum.add(*misses_[corner]);
     went = went + went_[corner];
-    ++count;
   }
-  around_.reset();
-  went_around_ = count > 0 ? divide(went, count) : Vec3i{};
-  if (count > 0) around_ = Miss{sum.normal / count, sum.tangent / count};
+  around_ = sum.mean();
+  went_around_ = around_ ? divide(went, sum.count()) : Vec3i{};
 }
 
 void MoveCoder::code(BitCoder& coder, const Ring& ring, bool closed, const Vec3i& from, int from_step, int step,

@@ -38,18 +38,14 @@ std::size_t PointCoder::size_class(const Ring& ring, bool closed) {
 
 /// How well vertices around were predicted, of earlier rounds and of this one.
 void PointCoder::find_misses(const Ring& ring) {
-  Miss sum;
-  int count = 0;
+  MissSum sum;
   const auto add = [&](Index vertex) {
-    if (vertex < base_count_ || vertex >= misses_.size()) return;
-    sum.normal += misses_[vertex].normal;
-    sum.tangent += misses_[vertex].tangent;
-    ++count;
+    if (vertex >= base_count_ && vertex < misses_.size()) sum.add(misses_[vertex]);
   };
   for (const Index corner : ring.corners()) add(corner);
   for (const Index vertex : ring.beyond()) add(vertex);
-  has_misses_ = count > 0;
-  around_ = has_misses_ ? Miss{sum.normal / count, sum.tangent / count} : Miss{kUsualNormalMiss, kUsualTangentMiss};
+  has_misses_ = sum.count() > 0;
+  around_ = sum.mean().value_or(Miss{kUsualNormalMiss, kUsualTangentMiss});
 }
 
 void PointCoder::predict(const Ring& ring, bool closed) {

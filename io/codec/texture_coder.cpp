@@ -17,16 +17,6 @@ constexpr int kCoordinateBits = 10;         // of projected positions
 constexpr std::int64_t kMostOff = 1 << 20;  // from the mean, sixteenths
 constexpr int kUsualTextureMiss = -32;
 
-Vec3i normal_of(const ElementPlace& place) {
-  Vec3i sum;
-  for (const Index face : place.faces) {
-    const Vec3i& p = place.positions[place.mesh.from(3 * face)];
-    sum = sum +
-          cross(place.positions[place.mesh.from(3 * face + 1)] - p, place.positions[place.mesh.from(3 * face + 2)] - p);
-  }
-  return unit(sum);
-}
-
 }  // namespace
 
 FittedTextureCoder::FittedTextureCoder(const AttributeSpec& spec)
@@ -43,7 +33,7 @@ void FittedTextureCoder::add_point(const ElementPlace& place, const Vec3i& along
 /// Gathers the points around, projected along the normal.
 void FittedTextureCoder::gather(const ElementPlace& place) {
   points_.clear();
-  const Vec3i n = normal_of(place);
+  const Vec3i n = unit(place.area());
   const Vec3i first =
       place.positions[place.wedges.vertex(place.ring.front())] - place.positions[place.wedges.vertex(place.wedge)];
   const Vec3i along_x = unit(first * 16 - times(n, along(first * 16, n)));
