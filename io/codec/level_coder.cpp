@@ -221,7 +221,8 @@ bool LevelCoder::split(std::size_t i) {
     split_.faces.push_back(
         {face, mesh_.group(face), mesh_.wedge(3 * face), mesh_.wedge(3 * face + 1), mesh_.wedge(3 * face + 2)});
   places_.resize(mesh_.vertex_count());
-  for (auto k = static_cast<Index>(faces.size()); k-- > 0;) places_[mesh_.from(3 * faces[k] + 1)] = k;
+  for (auto k = static_cast<Index>(faces.size()); k-- > 0;)
+    places_[mesh_.from(3 * faces[k] + 1)] = static_cast<std::uint16_t>(k);
   const auto place_of = [&](Index wedge) {
     const Index vertex = wedges_.vertex(wedge), place = places_[vertex];
     if (place < faces.size() && mesh_.from(3 * faces[place] + 1) == vertex) return place;

@@ -190,7 +190,9 @@ class LevelCoder {
   SectorList sectors_;
   std::size_t vertices_done_ = 0;  // those of the round that have attributes
   std::vector<Index> star_, joined_, vertex_faces_;
-  std::vector<Index> places_;  // by vertex: which corner it is of the ring that was looked at last, if it is one
+  // By vertex: which corner it is of the ring that was looked at last, if it is one. Rings of more corners than this
+  // counts are refused.
+  std::vector<std::uint16_t> places_;
   Star split_;
 };
 
