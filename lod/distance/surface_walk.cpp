@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include <lodestone/core/detail/edges.h>
 #include <lodestone/core/detail/position_index.h>
@@ -19,21 +22,32 @@ namespace {
 constexpr int kMostSteps = 32;          // over edges that a point lies beyond, before distances are compared
 constexpr double kRounding = 1 + 1e-5;  // of squared distances in single precision
 
+/// Links numbers that are in one group, each to the next one and the last to the first.
+std::vector<Index> circles(std::span<const Index> group_of, std::size_t group_count) {
+  std::vector<Index> next(group_of.size()), last(group_count, kNoIndex);
+  for (Index i = 0; i < next.size(); ++i) {
+    Index& before = last[group_of[i]];
+    next[i] = before != kNoIndex ? std::exchange(next[before], i) : i;
+    before = i;
+  }
+  return next;
+}
+
 }  // namespace
 
-SurfaceWalk::SurfaceWalk(const Mesh& mesh) : place_(mesh.corner_wedge.size()), across_(mesh.corner_wedge.size()) {
+SurfaceWalk::SurfaceWalk(const Mesh& mesh) : mesh_(&mesh), across_(mesh.corner_wedge.size()) {
   const std::vector<Index> place_of_vertex = places_of(mesh.positions);
-  for (Index c = 0; c < place_.size(); ++c) place_[c] = place_of_vertex[mesh.corner_vertex(c)];
-  corners_ = Grouping(mesh.vertex_count(), place_.size(), [&](Index corner) { return place_[corner]; });
-  for_each_edge(sorted_edges(place_), [&](Edge edge) {
+  std::vector<Index> place(mesh.corner_wedge.size());
+  for (Index c = 0; c < place.size(); ++c) place[c] = place_of_vertex[mesh.corner_vertex(c)];
+  for_each_edge(sorted_edges(place), [&](Edge edge) {
     for (std::size_t i = 0; i < edge.size(); ++i) across_[edge[i].corner] = edge[(i + 1) % edge.size()].corner;
   });
+  around_ = circles(place, mesh.vertex_count());
   update(mesh);
 }
 
 void SurfaceWalk::update(const Mesh& mesh) {
-  triangles_.resize(mesh.face_count());
-  for (Index f = 0; f < triangles_.size(); ++f) triangles_[f] = triangle_of(mesh, f);
+  mesh_ = &mesh;
   slabs_.resize(mesh.face_count());
   for (Index f = 0; f < slabs_.size(); ++f) slabs_[f] = slab_of(f);
   for (Index f = 0; f < slabs_.size(); ++f) add_neighbours(f);
@@ -53,13 +67,12 @@ void SurfaceWalk::update(const Mesh& mesh) {
 
 /// Returns a face's slab without what depends on its neighbours.
 SurfaceWalk::Slab SurfaceWalk::slab_of(Index face) const {
-  const Triangle& triangle = triangles_[face];
+  const Triangle triangle = triangle_of(*mesh_, face);
   const Vec3 corners[3] = {Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)};
   const Vec3 area = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double twice_area = length(area);
   Slab slab{};
   slab.set_origin(triangle.a);
-  slab.across.fill(kNoIndex);
   const auto set = [&](std::size_t k, const Vec3& direction, double offset) {
     slab.x[k] = static_cast<float>(direction.x);
     slab.y[k] = static_cast<float>(direction.y);
@@ -79,23 +92,19 @@ SurfaceWalk::Slab SurfaceWalk::slab_of(Index face) const {
   return slab;
 }
 
-/// Notes which faces lie beyond a face's edges, and how these fold. Where several do, or none, a point over the edge is
-/// for comparing distances.
+/// Notes how the faces beyond a face's edges fold. Where several lie there a point over the edge is for comparing
+/// distances.
 void SurfaceWalk::add_neighbours(Index face) {
   Slab& slab = slabs_[face];
   for (Index k = 0; k < 3; ++k) {
     const Index corner = 3 * face + k;
-    const Index other = across_[corner];
-    if (other == corner) continue;
-    if (across_[other] != corner) {
+    if (across_[corner] == corner) continue;
+    if (!has_one_across(corner)) {
       slab.rise[k] = std::numeric_limits<float>::quiet_NaN();
       continue;
     }
-    slab.across[k] = face_of_corner(other);
-    const Triangle& there = triangles_[face_of_corner(other)];
-    const Index apex = previous_corner(other);
-    const Vec3f& beyond = apex % 3 == 0 ? there.a : apex % 3 == 1 ? there.b : there.c;
-    const std::array<float, 4> distances = Lie::of(Vec3(beyond), slab).distance;
+    const Vec3 beyond = mesh_->corner_position(previous_corner(across_[corner]));
+    const std::array<float, 4> distances = Lie::of(beyond, slab).distance;
     slab.rise[k] = distances[3];
     slab.run[k] = -distances[k];
   }
@@ -111,7 +120,7 @@ SurfaceWalk::Place SurfaceWalk::nearest_from(const Vec3& p, Index face) const {
     before = best.face;
     try_around(p, best);
   }
-  return {best.face, weights_at(best.point, triangles_[best.face], best.squared_distance)};
+  return {best.face, weights_at(best.point, triangle_of(*mesh_, best.face), best.squared_distance)};
 }
 
 /// Goes on over edges that the point lies beyond. True where it comes to a face that the point lies over, no farther
@@ -130,7 +139,7 @@ bool SurfaceWalk::walk_over(const Vec3& p, Index& face, Place& place) const {
     const float squared = d[3] * d[3];
     if (d[k] >= 0) {
       Index nearer = kNoIndex;
-      if (squared > least || !look_into_folds(p, slab, lie, nearer)) return false;
+      if (squared > least || !look_into_folds(p, face, lie, nearer)) return false;
       if (nearer != kNoIndex) {
         face = nearer, left_by = kNoIndex;
         continue;
@@ -145,27 +154,30 @@ bool SurfaceWalk::walk_over(const Vec3& p, Index& face, Place& place) const {
     const Index corner = 3 * face + static_cast<Index>(k), other = across_[corner];
     // At a border, and where both faces at an edge have the point beyond it, it is the edge that is nearest.
     if (other == corner || other == left_by) return land_on_edge(p, corner, least, place);
-    if (slab.across[k] == kNoIndex) return false;
+    if (across_[other] != corner) return false;
     left_by = corner;
-    face = slab.across[k];
+    face = face_of_corner(other);
   }
   return false;
 }
 
 /// Looks at the faces beyond a face that the point lies over which fold up so far that it lies before them, too. False
 /// where they do not tell what is nearest; `nearer` is the nearest of those that are nearer, and that it lies over.
-bool SurfaceWalk::look_into_folds(const Vec3& p, const Slab& slab, const Lie& lie, Index& nearer) const {
+bool SurfaceWalk::look_into_folds(const Vec3& p, Index face, const Lie& lie, Index& nearer) const {
   float least = lie.distance[3] * lie.distance[3];
   for (std::size_t k = 0; k < 3; ++k) {
     if (lie.slack[k] >= 0) continue;
-    if (slab.across[k] == kNoIndex || !slabs_[slab.across[k]].has_area()) return false;
-    const std::array<float, 4> d = Lie::of(p, slabs_[slab.across[k]]).distance;
+    const Index corner = 3 * face + static_cast<Index>(k);
+    if (!has_one_across(corner)) return false;
+    const Index other = face_of_corner(across_[corner]);
+    if (!slabs_[other].has_area()) return false;
+    const std::array<float, 4> d = Lie::of(p, slabs_[other]).distance;
     const float beyond = std::min({d[0], d[1], d[2], 0.0F});
     const float at_least = d[3] * d[3] + beyond * beyond;
     if (at_least >= least) continue;
     if (beyond < 0) return false;
     least = at_least;
-    nearer = slab.across[k];
+    nearer = other;
   }
   return true;
 }
@@ -174,7 +186,7 @@ bool SurfaceWalk::look_into_folds(const Vec3& p, const Slab& slab, const Lie& li
 /// the edge, or farther away than the first face may be.
 bool SurfaceWalk::land_on_edge(const Vec3& p, Index corner, float least, Place& place) const {
   const Index face = face_of_corner(corner), k = corner % 3, next = next_corner(corner) % 3;
-  const Triangle& triangle = triangles_[face];
+  const Triangle triangle = triangle_of(*mesh_, face);
   const std::array<Vec3, 3> corners = {Vec3(triangle.a), Vec3(triangle.b), Vec3(triangle.c)};
   const Vec3 from = corners[k], edge = corners[next] - from;
   const double along = dot(p - from, edge), whole = squared_length(edge);
@@ -190,12 +202,12 @@ bool SurfaceWalk::land_on_edge(const Vec3& p, Index corner, float least, Place& 
 }
 
 SurfaceWalk::Candidate SurfaceWalk::look_at(const Vec3& p, Index face) const {
-  const NearestPoint nearest = nearest_in_triangle(p, triangles_[face]);
+  const NearestPoint nearest = nearest_in_triangle(p, triangle_of(*mesh_, face));
   return {face, nearest.point, nearest.corners, squared_length(p - nearest.point)};
 }
 
 void SurfaceWalk::try_face(const Vec3& p, Index face, Candidate& best) const {
-  if (face == best.face || is_no_nearer(triangles_[face], best.point, p)) return;
+  if (face == best.face || is_no_nearer(triangle_of(*mesh_, face), best.point, p)) return;
   const Candidate there = look_at(p, face);
   if (there.squared_distance < best.squared_distance) best = there;
 }
@@ -203,6 +215,17 @@ void SurfaceWalk::try_face(const Vec3& p, Index face, Candidate& best) const {
 /// Tries the faces beyond the edge that leaves a corner.
 void SurfaceWalk::try_across(const Vec3& p, Index corner, Candidate& best) const {
   for (Index other = across_[corner]; other != corner; other = across_[other]) try_face(p, face_of_corner(other), best);
+}
+
+/// Tries the faces at the position of a corner, in their order.
+void SurfaceWalk::try_at_corner(const Vec3& p, Index corner, Candidate& best) const {
+  while (around_[corner] > corner) corner = around_[corner];
+  const Index first = around_[corner];
+  Index at = first;
+  do {
+    try_face(p, face_of_corner(at), best);
+    at = around_[at];
+  } while (at != first);
 }
 
 /// Tries the faces that share what the best point lies on, an edge or a corner; where it lies inside of a face, those
@@ -213,7 +236,7 @@ void SurfaceWalk::try_around(const Vec3& p, Candidate& best) const {
     case 0b001:
     case 0b010:
     case 0b100:
-      for (const Index corner : corners_[place_[first + best.corners / 2]]) try_face(p, face_of_corner(corner), best);
+      try_at_corner(p, first + best.corners / 2, best);
       break;
     case 0b011:
       try_across(p, first, best);

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
-#include <lodestone/core/detail/grouping.h>
 #include <lodestone/core/mesh.h>
 
 #include "distance/triangle.h"
@@ -17,9 +15,10 @@ namespace lodestone::detail {
 /// Distances are as fine as single precision is over the size of a face and the way from it.
 class SurfaceWalk {
  public:
+  /// The mesh outlives the object. Cost: O(n).
   explicit SurfaceWalk(const Mesh& mesh);
 
-  /// Takes the positions anew: vertices may have moved meanwhile, faces are the same.
+  /// To be called before the next walk once vertices have moved; faces are the same, and `mesh` outlives the object.
   void update(const Mesh& mesh);
 
   /// Where a walk has ended.
@@ -39,14 +38,14 @@ class SurfaceWalk {
 
  private:
   /// What says whether a point lies over the inside of a face, and beyond which edge if not. Edge k leaves corner k;
-  /// the entries of arrays of four are for the three edges, and for the plane.
-  struct alignas(64) Slab {
+  /// the entries are for the three edges, and for the plane. What folds there is 0 at a border, and not a number where
+  /// several faces lie beyond.
+  struct alignas(16) Slab {
     std::array<float, 4> x, y, z;         // Directions: from each edge into the face, and the normal; of length 1.
     std::array<float, 4> offset;          // What to add to the products with a point, to have distances.
     std::array<float, 4> rise;            // How high the corner beyond each edge lies over the plane,
     std::array<float, 4> run;             // and how far from the edge.
     std::array<float, 4> inverse_height;  // Of the face, from each edge to the corner on the other side.
-    std::array<Index, 3> across;          // The face beyond each edge, where there is just one.
 
     bool has_area() const { return inverse_height[0] > 0; }  // Without, it says nothing.
 
@@ -72,19 +71,20 @@ class SurfaceWalk {
 
   Slab slab_of(Index face) const;
   void add_neighbours(Index face);
+  bool has_one_across(Index corner) const { return across_[corner] != corner && across_[across_[corner]] == corner; }
   bool walk_over(const Vec3& p, Index& face, Place& place) const;
-  bool look_into_folds(const Vec3& p, const Slab& slab, const Lie& lie, Index& nearer) const;
+  bool look_into_folds(const Vec3& p, Index face, const Lie& lie, Index& nearer) const;
   bool land_on_edge(const Vec3& p, Index corner, float least, Place& place) const;
   Candidate look_at(const Vec3& p, Index face) const;
   void try_face(const Vec3& p, Index face, Candidate& best) const;
   void try_across(const Vec3& p, Index corner, Candidate& best) const;
+  void try_at_corner(const Vec3& p, Index corner, Candidate& best) const;
   void try_around(const Vec3& p, Candidate& best) const;
 
-  std::vector<Triangle> triangles_;
+  const Mesh* mesh_;
   std::vector<Slab> slabs_;
-  std::vector<Index> place_;   // by corner: the first vertex at its position
-  Grouping corners_;           // by place
-  std::vector<Index> across_;  // by the corner that an edge leaves: the next one at the same edge, in a circle
+  std::vector<Index> around_;  // by corner: the next one at the same position, ascending, in a circle
+  std::vector<Index> across_;  // by the corner that an edge leaves: the next one at the same edge, likewise
 };
 
 }  // namespace lodestone::detail
