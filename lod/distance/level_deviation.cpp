@@ -66,8 +66,7 @@ struct LevelDeviation::Impl {
 
   const Mesh& original;
   DeviationOptions options;
-  double diagonal;  // The original's.
-  SurfaceIndex index;
+  double diagonal;              // The original's.
   std::vector<Index> opposite;  // Of the original's corners.
   TargetSurface surface;
   PatchBound patch;
@@ -87,9 +86,8 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& wanted)
     : original(mesh),
       options(wanted),
       diagonal(bounding_box(mesh).diagonal()),
-      index(mesh),
       opposite(detail::opposite_corners(mesh)),
-      surface(mesh, opposite, index),
+      surface(mesh, opposite),
       patch(mesh, opposite),
       vertices(mesh.positions),
       original_faces(mesh.face_count()),

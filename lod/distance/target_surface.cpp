@@ -11,8 +11,6 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr std::size_t kMostScans = 30;  // An index takes about the time of so many.
-
 double squared_distance_to_box(const Vec3& p, const Triangle& triangle) {
   const auto beyond = [](double x, float a, float b, float c) {
     const auto low = static_cast<double>(std::min({a, b, c})), high = static_cast<double>(std::max({a, b, c}));
@@ -68,20 +66,21 @@ bool TargetSurface::step_around(const Vec3& p, Place& place) const {
 }
 
 TargetSurface::Near TargetSurface::nearest(const Vec3& p, Index hint) {
-  if (given_ == nullptr && !made_) {
-    if (scans_++ < kMostScans) return scan(p, hint);
-    made_.emplace(mesh_);
+  if (given_ == nullptr) {
+    if (!made_) made_.emplace(mesh_);
+    return search(p, hint);
   }
-  const SurfaceIndex& index = given_ != nullptr ? *given_ : *made_;
-  const SurfaceIndex::Hit hit = index.nearest(p, std::numeric_limits<double>::infinity(), hint);
+  const SurfaceIndex::Hit hit = given_->nearest(p, std::numeric_limits<double>::infinity(), hint);
   return {hit.face, hit.distance};
 }
 
 /// Looks at all faces whose boxes are nearer than the best so far, which is `hint` at first.
-TargetSurface::Near TargetSurface::scan(const Vec3& p, Index hint) const {
+TargetSurface::Near TargetSurface::search(const Vec3& p, Index hint) const {
   Place place = hint != kNoIndex ? look_at(p, hint) : Place{kNoIndex, 0, std::numeric_limits<double>::infinity()};
-  for (Index face = 0; face < mesh_.face_count(); ++face)
+  made_->visit_nearer(p, place.squared_distance, [&](Index face) {
     if (squared_distance_to_box(p, triangle_of(mesh_, face)) < place.squared_distance) step_to(p, face, place);
+    return place.squared_distance;
+  });
   return {place.face, std::sqrt(place.squared_distance)};
 }
 

@@ -1,15 +1,16 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <span>
 
 #include <lodestone/core/mesh.h>
 #include <lodestone/lod/surface_index.h>
 
+#include "distance/face_boxes.h"
+
 namespace lodestone::detail {
 
-/// The surface that distances are measured to: by its neighbours where a face nearby is known, by an index elsewhere.
+/// The surface that distances are measured to: by its neighbours where a face nearby is known, by a search elsewhere.
 class TargetSurface {
  public:
   /// A face, and how far it is.
@@ -21,7 +22,7 @@ class TargetSurface {
   /// `opposite` are the mesh's opposite_corners; `index` is the mesh's, too. All outlive the object.
   TargetSurface(const Mesh& mesh, std::span<const Index> opposite, const SurfaceIndex& index)
       : mesh_(mesh), opposite_(opposite), given_(&index) {}
-  /// Makes the index itself, once as much was searched without as it is worth.
+  /// Searches by boxes of its own, made for the first search.
   TargetSurface(const Mesh& mesh, std::span<const Index> opposite) : mesh_(mesh), opposite_(opposite) {}
 
   double distance_to_face(const Vec3& p, Index face) const;
@@ -43,13 +44,12 @@ class TargetSurface {
   bool step_to(const Vec3& p, Index face, Place& place) const;
   bool step_across(const Vec3& p, Place& place) const;
   bool step_around(const Vec3& p, Place& place) const;
-  Near scan(const Vec3& p, Index hint) const;
+  Near search(const Vec3& p, Index hint) const;
 
   const Mesh& mesh_;
   std::span<const Index> opposite_;
   const SurfaceIndex* given_ = nullptr;
-  std::optional<SurfaceIndex> made_;
-  std::size_t scans_ = 0;
+  std::optional<FaceBoxes> made_;
 };
 
 }  // namespace lodestone::detail

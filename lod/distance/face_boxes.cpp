@@ -1,0 +1,119 @@
+#include "distance/face_boxes.h"
+
+#include <cstdint>
+
+#include "distance/morton_curve.h"
+#include "distance/triangle.h"
+#include "distance/wide_vectors.h"
+
+namespace lodestone::detail {
+namespace {
+
+// How large a run's box may be, in boxes of a face. Eight faces that lie together make one of about three; faces in any
+// order make one as large as the mesh.
+constexpr double kTogetherSize = 8;
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+Vec3f least(const Vec3f& a, const Vec3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+Vec3f most(const Vec3f& a, const Vec3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+}  // namespace
+
+FaceBoxes::Node::Node() {
+  for (std::array<float, kWidth>& axis : low) axis.fill(kNothing);
+  for (std::array<float, kWidth>& axis : high) axis.fill(-kNothing);
+}
+
+void FaceBoxes::Node::add(std::size_t child, const Vec3f& low_end, const Vec3f& high_end) {
+  const float ends[2][3] = {{low_end.x, low_end.y, low_end.z}, {high_end.x, high_end.y, high_end.z}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis][child] = std::min(low[axis][child], ends[0][axis]);
+    high[axis][child] = std::max(high[axis][child], ends[1][axis]);
+  }
+}
+
+FaceBoxes::FaceBoxes(const Mesh& mesh) : mesh_(mesh) {
+  if (mesh.face_count() == 0) return;
+  const std::size_t runs = (mesh.face_count() + kWidth - 1) / kWidth;
+  nodes_.reserve(runs / (kWidth - 1) + 24);
+  add_runs();
+  if (!is_together()) {
+    sort_along_curve();
+    add_runs();
+  }
+  add_levels();
+}
+
+void FaceBoxes::add_runs() {
+  constexpr std::size_t kFaces = kWidth * kWidth;
+  nodes_.assign((mesh_.face_count() + kFaces - 1) / kFaces, Node());
+  for (std::size_t i = 0; i < mesh_.face_count(); ++i) {
+    const auto [a, b, c] = triangle_of(mesh_, face_at(i));
+    nodes_[i / kFaces].add(i / kWidth % kWidth, least(least(a, b), c), most(most(a, b), c));
+  }
+}
+
+/// Whether the faces of most runs lie together.
+bool FaceBoxes::is_together() const {
+  double faces = 0, runs = 0;
+  for (std::size_t i = 0; i < mesh_.face_count(); ++i) {
+    const auto [a, b, c] = triangle_of(mesh_, static_cast<Index>(i));
+    faces += length(Vec3(most(most(a, b), c)) - Vec3(least(least(a, b), c)));
+  }
+  for (std::size_t i = 0; i < mesh_.face_count(); i += kWidth) {
+    const Node& node = nodes_[i / (kWidth * kWidth)];
+    const std::size_t child = i / kWidth % kWidth;
+    const auto size = [&](std::size_t axis) {
+      return static_cast<double>(node.high[axis][child]) - static_cast<double>(node.low[axis][child]);
+    };
+    runs += length(Vec3{size(0), size(1), size(2)});
+  }
+  return runs * kWidth <= kTogetherSize * faces;
+}
+
+void FaceBoxes::sort_along_curve() {
+  const MortonCurve curve(bounding_box(mesh_));
+  std::vector<std::uint64_t> keys(mesh_.face_count());
+  for (Index f = 0; f < keys.size(); ++f) {
+    const auto [a, b, c] = triangle_of(mesh_, f);
+    keys[f] = curve.code((Vec3(a) + Vec3(b) + Vec3(c)) * (1.0 / 3)) >> 31 << 32 | f;
+  }
+  std::sort(keys.begin(), keys.end());
+  order_.assign(keys.begin(), keys.end());
+}
+
+void FaceBoxes::add_levels() {
+  level_begin_.push_back(0);
+  for (std::size_t begin = 0; nodes_.size() - begin > 1;) {
+    const std::size_t end = nodes_.size();
+    level_begin_.push_back(end);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Node below = nodes_[i];
+      if ((i - begin) % kWidth == 0) nodes_.emplace_back();
+      const auto of_all = [&](std::size_t axis) {
+        return std::pair{*std::min_element(below.low[axis].begin(), below.low[axis].end()),
+                         *std::max_element(below.high[axis].begin(), below.high[axis].end())};
+      };
+      const auto [x, y, z] = std::array{of_all(0), of_all(1), of_all(2)};
+      nodes_.back().add((i - begin) % kWidth, {x.first, y.first, z.first}, {x.second, y.second, z.second});
+    }
+    begin = end;
+  }
+}
+
+LODESTONE_WIDE_VECTORS FaceBoxes::Distances FaceBoxes::squared_distances(const Node& node, const Vec3& p) {
+  const double at[3] = {p.x, p.y, p.z};
+  Distances sum{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      const double below = static_cast<double>(node.low[axis][i]) - at[axis];
+      const double above = at[axis] - static_cast<double>(node.high[axis][i]);
+      const double beyond = std::max(std::max(below, above), 0.0);
+      sum[i] += beyond * beyond;
+    }
+  }
+  return sum;
+}
+
+}  // namespace lodestone::detail
