@@ -26,6 +26,7 @@ DeviationOptions measuring_options(const Progress& progress) {
 /// Copies the faces that are left, and the vertices they use.
 Mesh current_level(const Mesh& full, const Connectivity& current) {
   Mesh level;
+  level.corner_wedge.reserve(3 * current.face_count());
   Compaction vertices(full.vertex_count());
   for (Index c = 0; c < 3 * current.face_slot_count(); ++c) {
     if (!current.has_face(face_of_corner(c))) continue;

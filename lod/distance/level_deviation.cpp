@@ -11,13 +11,15 @@
 
 #include <lodestone/core/detail/position_index.h>
 
+#include "distance/face_names.h"
 #include "distance/supremum.h"
 #include "distance/triangle.h"
-#include "distance/triple_table.h"
 
 namespace lodestone {
 namespace {
 
+using detail::FaceName;
+using detail::FaceNames;
 using detail::Goal;
 using detail::KnownDistance;
 using detail::PatchBound;
@@ -26,8 +28,6 @@ using detail::SupremumSearch;
 using detail::SurfaceBounds;
 using detail::TargetSurface;
 using detail::Triangle;
-using detail::Triple;
-using detail::TripleTable;
 using detail::Witnesses;
 
 /// Returns the original's vertex at each vertex of `mesh`, the first where several are; kNoIndex where none is.
@@ -39,15 +39,15 @@ std::vector<Index> find_all(const PositionIndex& vertices, const Mesh& mesh) {
 }
 
 /// What names a face of the original and of its levels alike: its corners in the original's vertices, ascending.
-Triple face_name(const Mesh& mesh, const std::vector<Index>& vertex_names, Index face) {
-  Triple name;
+FaceName face_name(const Mesh& mesh, const std::vector<Index>& vertex_names, Index face) {
+  FaceName name;
   for (Index i = 0; i < 3; ++i) name[i] = vertex_names[mesh.corner_vertex(3 * face + i)];
   std::sort(name.begin(), name.end());
   return name;
 }
 
 /// Whether all corners are vertices of the original.
-bool is_known(const Triple& name) { return name[2] != kNoIndex; }
+bool is_known(const FaceName& name) { return name[2] != kNoIndex; }
 
 }  // namespace
 
@@ -71,11 +71,11 @@ struct LevelDeviation::Impl {
   TargetSurface surface;
   PatchBound patch;
   PositionIndex vertices;  // Of the original.
-  TripleTable original_faces;
+  FaceNames original_faces;
   std::vector<Index> face_at;  // A face at each of the original's vertices, by name; kNoIndex: none.
   SurfaceBounds forward;       // Of the original, to the last level.
 
-  TripleTable level_faces;           // Of the last level.
+  FaceNames level_faces;             // Of the last level.
   std::vector<double> level_bounds;  // Of the last level's faces, to the original.
   Vec3 farthest_point;               // Of the original, from the last level.
   Index farthest_face = kNoIndex;    // Of the level, from the original; as numbered now.
@@ -90,12 +90,12 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& wanted)
       surface(mesh, opposite),
       patch(mesh, opposite),
       vertices(mesh.positions),
-      original_faces(mesh.face_count()),
+      original_faces(mesh.vertex_count(), mesh.face_count()),
       face_at(mesh.vertex_count(), kNoIndex),
       forward(mesh, true) {
   const std::vector<Index> vertex_names = vertices.add_all();
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    const Triple name = face_name(mesh, vertex_names, f);
+    const FaceName name = face_name(mesh, vertex_names, f);
     original_faces.insert(name, f);
     for (const Index v : name) {
       if (face_at[v] == kNoIndex) face_at[v] = f;
@@ -108,11 +108,11 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& wanted)
 SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
   const std::vector<Index> vertex_names = find_all(vertices, level);
   SurfaceBounds backward(level, false);
-  TripleTable faces_now(level.face_count());
+  FaceNames faces_now(original.vertex_count(), level.face_count());
   std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.
   std::vector<Index> same_face(level.face_count(), kNoIndex);  // The original's face for each of the level's.
   for (Index f = 0; f < level.face_count(); ++f) {
-    const Triple name = face_name(level, vertex_names, f);
+    const FaceName name = face_name(level, vertex_names, f);
     if (!is_known(name)) continue;
     faces_now.insert(name, f);
     if (const Index before = level_faces.find(name); before != kNoIndex) {
@@ -220,7 +220,7 @@ Deviation LevelDeviation::Impl::measure(const Mesh& level, double moved, double 
 
 void LevelDeviation::Impl::forget() {
   forward = SurfaceBounds(original, true);
-  level_faces = TripleTable();
+  level_faces = FaceNames();
   level_bounds.clear();
   farthest_face = kNoIndex;
 }

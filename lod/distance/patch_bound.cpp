@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace lodestone::detail {
 namespace {
@@ -26,50 +28,38 @@ int common_side(const std::array<double, 3>& beside) {
   return static_cast<int>(left) - static_cast<int>(right);
 }
 
-/// The half-edges of a mesh by the vertex they leave.
-class HalfEdges {
- public:
-  explicit HalfEdges(const Mesh& mesh) : begin_(mesh.vertex_count() + 1, 0), edges_(mesh.corner_wedge.size()) {
-    const Index count = static_cast<Index>(mesh.corner_wedge.size());
-    for (Index c = 0; c < count; ++c) ++begin_[mesh.corner_vertex(c)];
-    Index sum = 0;
-    for (Index& b : begin_) b = sum += b;
-    // Filling from the back turns the ends into the beginnings.
-    for (Index c = count; c-- > 0;) {
-      edges_[--begin_[mesh.corner_vertex(c)]] = {mesh.corner_vertex(next_corner(c)), c};
-    }
-  }
+/// A half-edge at the lower of its ends: the other end in the upper half, and the corner that it leaves.
+using HalfEdge = std::uint64_t;
 
-  /// The corner of the half-edge from u to v; kNoIndex where there are none or several.
-  Index only_corner(Index u, Index v) const {
-    Index found = kNoIndex;
-    for (Index i = begin_[u]; i < begin_[u + 1]; ++i) {
-      if (edges_[i].to != v) continue;
-      if (found != kNoIndex) return kNoIndex;
-      found = edges_[i].corner;
-    }
-    return found;
-  }
+constexpr Index corner_of(HalfEdge half) { return static_cast<Index>(half); }
 
- private:
-  struct HalfEdge {
-    Index to;
-    Index corner;
-  };
-  std::vector<Index> begin_;
-  std::vector<HalfEdge> edges_;
-};
+/// Notes which of the half-edges at a vertex stand for the same edge: just two, one each way. So the relation is
+/// symmetric: the outline of a patch is counted from both of its sides.
+void match(const Mesh& mesh, Index vertex, std::vector<HalfEdge>& halves, std::vector<Index>& opposite) {
+  std::sort(halves.begin(), halves.end());
+  const auto leaves = [&](HalfEdge half) { return mesh.corner_vertex(corner_of(half)) == vertex; };
+  for (std::size_t i = 0, j = 0; i < halves.size(); i = j) {
+    while (j < halves.size() && halves[j] >> 32 == halves[i] >> 32) ++j;
+    const bool are_two = j - i == 2 && leaves(halves[i]) != leaves(halves[i + 1]);
+    for (std::size_t k = i; k < j; ++k)
+      opposite[corner_of(halves[k])] = are_two ? corner_of(halves[i + j - 1 - k]) : kNoIndex;
+  }
+}
 
 }  // namespace
 
 std::vector<Index> opposite_corners(const Mesh& mesh) {
-  const HalfEdges half_edges(mesh);
-  std::vector<Index> opposite(mesh.corner_wedge.size());
-  for (Index c = 0; c < opposite.size(); ++c) {
-    const Index u = mesh.corner_vertex(c);
-    const Index v = mesh.corner_vertex(next_corner(c));
-    // Both ways, so that the relation is symmetric: the outline of a patch is counted from both of its sides.
-    opposite[c] = half_edges.only_corner(u, v) == c ? half_edges.only_corner(v, u) : kNoIndex;
+  // Until a vertex's turn comes, the result links the half-edges of which it is the lower end.
+  std::vector<Index> opposite(mesh.corner_wedge.size()), first(mesh.vertex_count(), kNoIndex);
+  const auto end = [&](Index corner) { return mesh.corner_vertex(next_corner(corner)); };
+  for (Index c = 0; c < opposite.size(); ++c)
+    opposite[c] = std::exchange(first[std::min(mesh.corner_vertex(c), end(c))], c);
+  std::vector<HalfEdge> halves;
+  for (Index v = 0; v < first.size(); ++v) {
+    halves.clear();
+    for (Index c = first[v]; c != kNoIndex; c = opposite[c])
+      halves.push_back(HalfEdge{std::max(mesh.corner_vertex(c), end(c))} << 32 | c);
+    match(mesh, v, halves, opposite);
   }
   return opposite;
 }
@@ -229,7 +219,10 @@ bool PatchBound::take(Index face) {
 double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, double target, double slack) {
   patch_.clear();
   points_.clear();
-  ++run_;
+  if (++run_ == 0) {
+    std::fill(taken_in_.begin(), taken_in_.end(), run_);
+    ++run_;
+  }
   Frame frame;
   if (!make_frame(triangle, slack, frame)) return kNone;
   limit_ = target - slack;

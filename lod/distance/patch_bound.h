@@ -80,8 +80,8 @@ class PatchBound {
   std::span<const Index> opposite_;
   std::vector<Index> patch_;
   std::vector<Points> points_;           // Of the patch's faces.
-  std::vector<std::uint32_t> taken_in_;  // By face: the last run that it was in the patch of.
-  std::uint32_t run_ = 0;
+  std::vector<std::uint16_t> taken_in_;  // By face: the last run that it was in the patch of, since these began anew.
+  std::uint16_t run_ = 0;
   double limit_ = 0;   // That heights may have in this run.
   double height_ = 0;  // Of the patch.
 };

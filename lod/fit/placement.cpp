@@ -21,10 +21,10 @@
 #include <lodestone/core/detail/position_index.h>
 #include <lodestone/lod/surface_index.h>
 
+#include "distance/face_names.h"
 #include "distance/face_order.h"
 #include "distance/surface_walk.h"
 #include "distance/triangle.h"
-#include "distance/triple_table.h"
 #include "fit/attribute_lookup.h"
 #include "fit/common_vertices.h"
 #include "fit/constrained_edges.h"
@@ -114,10 +114,10 @@ std::vector<std::uint8_t> find_fixed(const Mesh& original, const Mesh& level,
 /// Leaves out faces that lie on another one, whichever way they face: what is nearest then has one direction.
 Mesh without_layers(const Mesh& mesh) {
   const std::vector<Index> places = places_of(mesh.positions);
-  TripleTable seen(mesh.face_count());
+  FaceNames seen(mesh.vertex_count(), mesh.face_count());
   std::vector<Index> kept;
   for (Index f = 0; f < mesh.face_count(); ++f) {
-    Triple corners;
+    FaceName corners;
     for (Index k = 0; k < 3; ++k) corners[k] = places[mesh.corner_vertex(3 * f + k)];
     std::sort(corners.begin(), corners.end());
     if (seen.insert(corners, f) == f) kept.push_back(f);
