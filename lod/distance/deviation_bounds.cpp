@@ -50,10 +50,18 @@ DeviationBounds::DeviationBounds(const Mesh& full, double step, const Progress& 
     : full_(&full),
       step_(step),
       measured_faces_(full.face_count()),
-      since_measured_(full.face_count()),
-      since_start_(full.face_count()) {
-  if (step > 0 && progress.add(0)) level_.emplace(full, measuring_options(progress));
+      since_start_(full.face_count()),
+      since_measured_(0) {
+  if (step > 0 && progress.add(0)) {
+    level_.emplace(full, measuring_options(progress));
+    since_measured_ = Chain(full.face_count());
+  }
   bound_.reserve(full.vertex_count());
+}
+
+double DeviationBounds::bound() const {
+  const double from_level = level_ ? measured_ + since_measured_.largest : since_start_.largest;
+  return std::max(last_, std::min(from_level, since_start_.largest));
 }
 
 void DeviationBounds::displacements(std::span<const RemovalRecord> copies, std::vector<double>& displacement) const {
@@ -62,13 +70,14 @@ void DeviationBounds::displacements(std::span<const RemovalRecord> copies, std::
 }
 
 void DeviationBounds::add(std::span<const RemovalRecord> copies, std::span<const double> displacement) {
-  for (std::size_t i = 0; i < copies.size(); ++i)
-    for (Chain* chain : {&since_measured_, &since_start_}) chain->add(copies[i], displacement[i]);
+  for_chains([&](Chain& chain) {
+    for (std::size_t i = 0; i < copies.size(); ++i) chain.add(copies[i], displacement[i]);
+  });
   bound_.push_back(round_up(bound()));
 }
 
 void DeviationBounds::add_vanished(std::span<const RemovalRecord> records, Index face, double reach) {
-  for (Chain* chain : {&since_measured_, &since_start_}) chain->add_vanished(records, face, reach);
+  for_chains([&](Chain& chain) { chain.add_vanished(records, face, reach); });
   vanished_ = true;
 }
 

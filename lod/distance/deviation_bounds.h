@@ -61,14 +61,19 @@ class DeviationBounds {
   };
 
   static float round_up(double value);
-  double bound() const { return std::max(last_, std::min(measured_ + since_measured_.largest, since_start_.largest)); }
+  double bound() const;
+  template <class Visit>
+  void for_chains(const Visit& visit) {
+    visit(since_start_);
+    if (level_) visit(since_measured_);
+  }
 
   const Mesh* full_;
   double step_;
   std::optional<LevelDeviation> level_;  // where it measures at all
   std::size_t measured_faces_;
-  Chain since_measured_;
   Chain since_start_;
+  Chain since_measured_;   // empty where it does not measure: as since_start_
   double measured_ = 0;    // bound of the last measured mesh
   bool vanished_ = false;  // whether a piece has since it was measured
   double last_ = 0;        // > 0 once nothing is left

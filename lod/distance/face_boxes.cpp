@@ -1,6 +1,9 @@
 #include "distance/face_boxes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "distance/morton_curve.h"
 #include "distance/triangle.h"
@@ -13,10 +16,22 @@ namespace {
 // order make one as large as the mesh.
 constexpr double kTogetherSize = 8;
 
+constexpr std::size_t kRunsOfSample = 7;  // Of so many one is looked at for that.
+
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 Vec3f least(const Vec3f& a, const Vec3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3f most(const Vec3f& a, const Vec3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+double squared_distance_to_box(const Vec3& p, const Triangle& triangle) {
+  const auto beyond = [](double x, float a, float b, float c) {
+    const auto low = static_cast<double>(std::min({a, b, c})), high = static_cast<double>(std::max({a, b, c}));
+    return std::max({low - x, x - high, 0.0});
+  };
+  return squared_length({beyond(p.x, triangle.a.x, triangle.b.x, triangle.c.x),
+                         beyond(p.y, triangle.a.y, triangle.b.y, triangle.c.y),
+                         beyond(p.z, triangle.a.z, triangle.b.z, triangle.c.z)});
+}
 
 }  // namespace
 
@@ -54,18 +69,17 @@ void FaceBoxes::add_runs() {
   }
 }
 
-/// Whether the faces of most runs lie together.
+/// Whether the faces of most runs lie together, by some runs.
 bool FaceBoxes::is_together() const {
   double faces = 0, runs = 0;
-  for (std::size_t i = 0; i < mesh_.face_count(); ++i) {
-    const auto [a, b, c] = triangle_of(mesh_, static_cast<Index>(i));
-    faces += length(Vec3(most(most(a, b), c)) - Vec3(least(least(a, b), c)));
-  }
-  for (std::size_t i = 0; i < mesh_.face_count(); i += kWidth) {
-    const Node& node = nodes_[i / (kWidth * kWidth)];
-    const std::size_t child = i / kWidth % kWidth;
+  for (std::size_t run = 0; run < mesh_.face_count() / kWidth; run += kRunsOfSample) {
+    for (std::size_t i = kWidth * run; i < kWidth * (run + 1); ++i) {
+      const auto [a, b, c] = triangle_of(mesh_, static_cast<Index>(i));
+      faces += length(Vec3(most(most(a, b), c)) - Vec3(least(least(a, b), c)));
+    }
+    const Node& node = nodes_[run / kWidth];
     const auto size = [&](std::size_t axis) {
-      return static_cast<double>(node.high[axis][child]) - static_cast<double>(node.low[axis][child]);
+      return static_cast<double>(node.high[axis][run % kWidth]) - static_cast<double>(node.low[axis][run % kWidth]);
     };
     runs += length(Vec3{size(0), size(1), size(2)});
   }
@@ -99,6 +113,37 @@ void FaceBoxes::add_levels() {
       nodes_.back().add((i - begin) % kWidth, {x.first, y.first, z.first}, {x.second, y.second, z.second});
     }
     begin = end;
+  }
+}
+
+FaceBoxes::Near FaceBoxes::nearest(const Vec3& p, Index hint) const {
+  Best best;
+  if (hint != kNoIndex) look_at(p, hint, best);
+  if (!nodes_.empty()) open(level_begin_.size() - 1, 0, p, best);
+  return {best.face, std::sqrt(best.squared)};
+}
+
+void FaceBoxes::look_at(const Vec3& p, Index face, Best& best) const {
+  const Triangle triangle = triangle_of(mesh_, face);
+  if (!(squared_distance_to_box(p, triangle) < best.squared)) return;
+  const double squared = squared_length(p - nearest_on_triangle(p, triangle));
+  if (squared < best.squared) best = {face, squared};
+}
+
+/// Looks at what may be nearer than the best so far, the children nearest first.
+void FaceBoxes::open(std::size_t level, std::size_t number, const Vec3& p, Best& best) const {
+  Distances distances = squared_distances(nodes_[level_begin_[level] + number], p);
+  for (;;) {
+    const auto nearest = std::min_element(distances.begin(), distances.end());
+    if (!(*nearest < best.squared)) return;
+    *nearest = std::numeric_limits<double>::infinity();
+    const std::size_t child = kWidth * number + static_cast<std::size_t>(nearest - distances.begin());
+    if (level > 0) {
+      open(level - 1, child, p, best);
+      continue;
+    }
+    const std::size_t end = std::min(kWidth * (child + 1), mesh_.face_count());
+    for (std::size_t i = kWidth * child; i < end; ++i) look_at(p, face_at(i), best);
   }
 }
 

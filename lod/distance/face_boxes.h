@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -18,12 +17,13 @@ class FaceBoxes {
   /// do not they are sorted along a curve. Cost: O(n), or O(n log n).
   explicit FaceBoxes(const Mesh& mesh);
 
-  /// Calls `visit(face)` for the faces of those runs whose boxes are nearer to `p` than a distance, the nearest run
-  /// first: `squared` is that distance's square, and what each call returns in its place.
-  template <class Visit>
-  void visit_nearer(const Vec3& p, double squared, const Visit& visit) const {
-    if (!nodes_.empty()) open(level_begin_.size() - 1, 0, p, squared, visit);
-  }
+  /// A face, and how far it is.
+  struct Near {
+    Index face = kNoIndex;
+    double distance = std::numeric_limits<double>::infinity();
+  };
+  /// Returns the nearest face to `p`; `hint` is one likely near it, or kNoIndex.
+  Near nearest(const Vec3& p, Index hint) const;
 
  private:
   static constexpr std::size_t kWidth = 8;  // Children of a node, and faces of a run.
@@ -37,6 +37,12 @@ class FaceBoxes {
   };
   using Distances = std::array<double, kWidth>;
 
+  /// The nearest face so far.
+  struct Best {
+    Index face = kNoIndex;
+    double squared = std::numeric_limits<double>::infinity();
+  };
+
   static Distances squared_distances(const Node& node, const Vec3& p);
   void add_runs();
   void add_levels();
@@ -44,22 +50,8 @@ class FaceBoxes {
   void sort_along_curve();
   Index face_at(std::size_t place) const { return order_.empty() ? static_cast<Index>(place) : order_[place]; }
 
-  template <class Visit>
-  void open(std::size_t level, std::size_t number, const Vec3& p, double& squared, const Visit& visit) const {
-    Distances distances = squared_distances(nodes_[level_begin_[level] + number], p);
-    for (;;) {
-      const auto nearest = std::min_element(distances.begin(), distances.end());
-      if (!(*nearest < squared)) return;
-      *nearest = std::numeric_limits<double>::infinity();
-      const std::size_t child = kWidth * number + static_cast<std::size_t>(nearest - distances.begin());
-      if (level > 0) {
-        open(level - 1, child, p, squared, visit);
-        continue;
-      }
-      for (std::size_t i = kWidth * child; i < std::min(kWidth * (child + 1), mesh_.face_count()); ++i)
-        squared = visit(face_at(i));
-    }
-  }
+  void look_at(const Vec3& p, Index face, Best& best) const;
+  void open(std::size_t level, std::size_t number, const Vec3& p, Best& best) const;
 
   const Mesh& mesh_;
   std::vector<Index> order_;              // The faces; empty where they stay as the mesh has them.

@@ -57,6 +57,9 @@ struct LevelDeviation::Impl {
   Deviation measure(const Mesh& level, double moved, double enough);
   void forget();
   SurfaceBounds inherit(const Mesh& level, double moved);
+  std::vector<Index> recognise_faces(const Mesh& level, const std::vector<Index>& vertex_names,
+                                     SurfaceBounds& backward);
+  void carry(const std::vector<Index>& face_now, double moved);
   void carry_nearest(const std::vector<Index>& face_now, double moved);
   void carry_bounds(const std::vector<Index>& face_now, double moved);
   void place_common_vertices(const Mesh& level, const std::vector<Index>& names, SurfaceBounds& backward);
@@ -108,30 +111,42 @@ LevelDeviation::Impl::Impl(const Mesh& mesh, const DeviationOptions& wanted)
 SurfaceBounds LevelDeviation::Impl::inherit(const Mesh& level, double moved) {
   const std::vector<Index> vertex_names = find_all(vertices, level);
   SurfaceBounds backward(level, false);
-  FaceNames faces_now(original.vertex_count(), level.face_count());
-  std::vector<Index> face_now(level_bounds.size(), kNoIndex);  // The level's face for each of the last level's.
-  std::vector<Index> same_face(level.face_count(), kNoIndex);  // The original's face for each of the level's.
+  carry(recognise_faces(level, vertex_names, backward), moved);
+  level_faces = FaceNames(original.vertex_count(), level.face_count());
   for (Index f = 0; f < level.face_count(); ++f) {
     const FaceName name = face_name(level, vertex_names, f);
     if (!is_known(name)) continue;
-    faces_now.insert(name, f);
-    if (const Index before = level_faces.find(name); before != kNoIndex) {
-      face_now[before] = f;
-      backward.faces[f] = level_bounds[before];
-    }
-    same_face[f] = original_faces.find(name);
-  }
-  carry_nearest(face_now, moved);
-  carry_bounds(face_now, moved);
-  for (Index f = 0; f < level.face_count(); ++f) {
-    if (same_face[f] == kNoIndex) continue;
+    level_faces.insert(name, f);
+    const Index same = original_faces.find(name);
+    if (same == kNoIndex) continue;
     backward.faces[f] = 0;
-    forward.lower(same_face[f], 0, std::array{f});
+    forward.lower(same, 0, std::array{f});
   }
   place_common_vertices(level, vertex_names, backward);
-  level_faces = std::move(faces_now);
-  if (farthest_face != kNoIndex) farthest_face = face_now[farthest_face];
   return backward;
+}
+
+/// Returns the level's face for each of the last level's, and hands their bounds on. Then it forgets the last level:
+/// the names of two levels at once would be the most that is held.
+std::vector<Index> LevelDeviation::Impl::recognise_faces(const Mesh& level, const std::vector<Index>& vertex_names,
+                                                         SurfaceBounds& backward) {
+  std::vector<Index> face_now(level_bounds.size(), kNoIndex);
+  for (Index f = 0; f < level.face_count() && !face_now.empty(); ++f) {
+    const FaceName name = face_name(level, vertex_names, f);
+    const Index before = is_known(name) ? level_faces.find(name) : kNoIndex;
+    if (before == kNoIndex) continue;
+    face_now[before] = f;
+    backward.faces[f] = level_bounds[before];
+  }
+  level_faces = FaceNames();
+  level_bounds = std::vector<double>();
+  return face_now;
+}
+
+void LevelDeviation::Impl::carry(const std::vector<Index>& face_now, double moved) {
+  carry_nearest(face_now, moved);
+  carry_bounds(face_now, moved);
+  if (farthest_face != kNoIndex) farthest_face = face_now[farthest_face];
 }
 
 void LevelDeviation::Impl::carry_nearest(const std::vector<Index>& face_now, double moved) {

@@ -29,15 +29,15 @@ int common_side(const std::array<double, 3>& beside) {
 }
 
 /// A half-edge at the lower of its ends: the other end in the upper half, and the corner that it leaves.
-using HalfEdge = std::uint64_t;
+using EdgeEnd = std::uint64_t;
 
-constexpr Index corner_of(HalfEdge half) { return static_cast<Index>(half); }
+constexpr Index corner_of(EdgeEnd half) { return static_cast<Index>(half); }
 
 /// Notes which of the half-edges at a vertex stand for the same edge: just two, one each way. So the relation is
 /// symmetric: the outline of a patch is counted from both of its sides.
-void match(const Mesh& mesh, Index vertex, std::vector<HalfEdge>& halves, std::vector<Index>& opposite) {
+void match(const Mesh& mesh, Index vertex, std::vector<EdgeEnd>& halves, std::vector<Index>& opposite) {
   std::sort(halves.begin(), halves.end());
-  const auto leaves = [&](HalfEdge half) { return mesh.corner_vertex(corner_of(half)) == vertex; };
+  const auto leaves = [&](EdgeEnd half) { return mesh.corner_vertex(corner_of(half)) == vertex; };
   for (std::size_t i = 0, j = 0; i < halves.size(); i = j) {
     while (j < halves.size() && halves[j] >> 32 == halves[i] >> 32) ++j;
     const bool are_two = j - i == 2 && leaves(halves[i]) != leaves(halves[i + 1]);
@@ -54,11 +54,11 @@ std::vector<Index> opposite_corners(const Mesh& mesh) {
   const auto end = [&](Index corner) { return mesh.corner_vertex(next_corner(corner)); };
   for (Index c = 0; c < opposite.size(); ++c)
     opposite[c] = std::exchange(first[std::min(mesh.corner_vertex(c), end(c))], c);
-  std::vector<HalfEdge> halves;
+  std::vector<EdgeEnd> halves;
   for (Index v = 0; v < first.size(); ++v) {
     halves.clear();
     for (Index c = first[v]; c != kNoIndex; c = opposite[c])
-      halves.push_back(HalfEdge{std::max(mesh.corner_vertex(c), end(c))} << 32 | c);
+      halves.push_back(EdgeEnd{std::max(mesh.corner_vertex(c), end(c))} << 32 | c);
     match(mesh, v, halves, opposite);
   }
   return opposite;
@@ -180,27 +180,27 @@ void PatchBound::start_patch(const Frame& frame, Index start) {
 /// Grows the patch across those edges of one of its faces that enter the triangle; all others may be part of the
 /// outline, and add to the winding: an edge of two faces of the patch takes away for one what it adds for the other.
 /// False where the outline enters the triangle.
-bool PatchBound::grow(const Frame& frame, std::size_t number, int& winding) {
+bool PatchBound::grow(const Frame& frame, Index face, const Points& points, int& winding) {
   for (Index i = 0; i < 3; ++i) {
-    const Point &p = points_[number][i], &q = points_[number][next_corner(i)];
+    const Point &p = points[i], &q = points[next_corner(i)];
     if (is_apart(p, q))
       winding += crossing(p, q);
-    else if (!take_across(frame, number, i))
+    else if (!take_across(frame, points, 3 * face + i))
       return false;
   }
   return true;
 }
 
-/// Takes the face beyond an edge of one of the patch, if there is one.
-bool PatchBound::take_across(const Frame& frame, std::size_t number, Index edge) {
-  const Index other = opposite_[3 * patch_[number] + edge];
+/// Takes the face beyond the edge that leaves a corner of one of the patch, if there is one; `points` are that one's.
+bool PatchBound::take_across(const Frame& frame, const Points& points, Index corner) {
+  const Index other = opposite_[corner];
   if (other == kNoIndex) return false;
   const Index face = face_of_corner(other);
   if (taken_in_[face] == run_) return true;
-  Points& points = points_.emplace_back();
-  points[other % 3] = points_[number][next_corner(edge)];
-  points[next_corner(other) % 3] = points_[number][edge];
-  points[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
+  Points& beyond = points_.emplace_back();
+  beyond[other % 3] = points[next_corner(corner) % 3];
+  beyond[next_corner(other) % 3] = points[corner % 3];
+  beyond[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
   return take(face);
 }
 
@@ -229,8 +229,12 @@ double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, doubl
   height_ = 0;
   start_patch(frame, start);
   int winding = 0;
-  for (std::size_t i = 0; i < patch_.size(); ++i)
-    if (!grow(frame, i, winding)) return kNone;
+  for (std::size_t i = 0; i < patch_.size();) {
+    before_.swap(points_);
+    points_.clear();
+    for (const Points& points : before_)
+      if (!grow(frame, patch_[i++], points, winding)) return kNone;
+  }
   return winding != 0 ? height_ + slack : kNone;
 }
 

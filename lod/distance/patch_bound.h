@@ -72,14 +72,14 @@ class PatchBound {
 
   Points project(const Frame& frame, Index face) const;
   void start_patch(const Frame& frame, Index start);
-  bool grow(const Frame& frame, std::size_t number, int& winding);
-  bool take_across(const Frame& frame, std::size_t number, Index edge);
+  bool grow(const Frame& frame, Index face, const Points& points, int& winding);
+  bool take_across(const Frame& frame, const Points& points, Index corner);
   bool take(Index face);
 
   const Mesh& surface_;
   std::span<const Index> opposite_;
   std::vector<Index> patch_;
-  std::vector<Points> points_;           // Of the patch's faces.
+  std::vector<Points> points_, before_;  // Of the patch's last faces: those being taken, and those it grows across.
   std::vector<std::uint16_t> taken_in_;  // By face: the last run that it was in the patch of, since these began anew.
   std::uint16_t run_ = 0;
   double limit_ = 0;   // That heights may have in this run.

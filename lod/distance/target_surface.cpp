@@ -9,20 +9,6 @@
 #include "distance/triangle.h"
 
 namespace lodestone::detail {
-namespace {
-
-double squared_distance_to_box(const Vec3& p, const Triangle& triangle) {
-  const auto beyond = [](double x, float a, float b, float c) {
-    const auto low = static_cast<double>(std::min({a, b, c})), high = static_cast<double>(std::max({a, b, c}));
-    return std::max({low - x, x - high, 0.0});
-  };
-  return squared_length({beyond(p.x, triangle.a.x, triangle.b.x, triangle.c.x),
-                         beyond(p.y, triangle.a.y, triangle.b.y, triangle.c.y),
-                         beyond(p.z, triangle.a.z, triangle.b.z, triangle.c.z)});
-}
-
-}  // namespace
-
 double TargetSurface::distance_to_face(const Vec3& p, Index face) const {
   return std::sqrt(look_at(p, face).squared_distance);
 }
@@ -68,20 +54,11 @@ bool TargetSurface::step_around(const Vec3& p, Place& place) const {
 TargetSurface::Near TargetSurface::nearest(const Vec3& p, Index hint) {
   if (given_ == nullptr) {
     if (!made_) made_.emplace(mesh_);
-    return search(p, hint);
+    const FaceBoxes::Near found = made_->nearest(p, hint);
+    return {found.face, found.distance};
   }
   const SurfaceIndex::Hit hit = given_->nearest(p, std::numeric_limits<double>::infinity(), hint);
   return {hit.face, hit.distance};
-}
-
-/// Looks at all faces whose boxes are nearer than the best so far, which is `hint` at first.
-TargetSurface::Near TargetSurface::search(const Vec3& p, Index hint) const {
-  Place place = hint != kNoIndex ? look_at(p, hint) : Place{kNoIndex, 0, std::numeric_limits<double>::infinity()};
-  made_->visit_nearer(p, place.squared_distance, [&](Index face) {
-    if (squared_distance_to_box(p, triangle_of(mesh_, face)) < place.squared_distance) step_to(p, face, place);
-    return place.squared_distance;
-  });
-  return {place.face, std::sqrt(place.squared_distance)};
 }
 
 }  // namespace lodestone::detail

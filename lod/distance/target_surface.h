@@ -44,7 +44,6 @@ class TargetSurface {
   bool step_to(const Vec3& p, Index face, Place& place) const;
   bool step_across(const Vec3& p, Place& place) const;
   bool step_around(const Vec3& p, Place& place) const;
-  Near search(const Vec3& p, Index hint) const;
 
   const Mesh& mesh_;
   std::span<const Index> opposite_;

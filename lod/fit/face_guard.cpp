@@ -135,8 +135,8 @@ OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) con
     if (distance <= reach_) return {place.face, distance};
     near = place.face;
   }
-  const SurfaceIndex::Hit hit = index_.nearest(point, std::numeric_limits<double>::infinity(), near);
-  return {hit.face, hit.distance};
+  const FaceBoxes::Near found = boxes_.nearest(point, near);
+  return {found.face, found.distance};
 }
 
 OriginalGuard::Standing::Standing(const Corners& c, Index face_near)

@@ -7,8 +7,8 @@
 
 #include <lodestone/core/mesh.h>
 #include <lodestone/core/progress.h>
-#include <lodestone/lod/surface_index.h>
 
+#include "distance/face_boxes.h"
 #include "distance/surface_walk.h"
 #include "fit/fit_samples.h"
 
@@ -65,8 +65,8 @@ class OriginalGuard {
  public:
   /// Both are the original's; each face looked at is one of the steps, and once these are cancelled none is. All
   /// outlive the guard.
-  OriginalGuard(const SurfaceIndex& index, const SurfaceWalk& walk, ProgressSteps& steps)
-      : index_(index), walk_(walk), steps_(steps) {}
+  OriginalGuard(const FaceBoxes& boxes, const SurfaceWalk& walk, ProgressSteps& steps)
+      : boxes_(boxes), walk_(walk), steps_(steps) {}
 
   /// How a level's faces lie to the original, by some points inside each.
   struct Survey {
@@ -116,7 +116,7 @@ class OriginalGuard {
   Nearest nearest(const Vec3& point, Index near) const;
   bool is_surely_fine(const Standing& last, const Corners& corners) const;
 
-  const SurfaceIndex& index_;
+  const FaceBoxes& boxes_;
   const SurfaceWalk& walk_;
   ProgressSteps& steps_;
   double reach_ = std::numeric_limits<double>::infinity();

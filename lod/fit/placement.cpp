@@ -21,6 +21,7 @@
 #include <lodestone/core/detail/position_index.h>
 #include <lodestone/lod/surface_index.h>
 
+#include "distance/face_boxes.h"
 #include "distance/face_names.h"
 #include "distance/face_order.h"
 #include "distance/surface_walk.h"
@@ -149,7 +150,7 @@ struct Original {
   std::optional<LineSamples> lines;
   std::optional<Mesh> layers;
   const Mesh* skin;  // as the guard sees it, where sheets lie on one another
-  std::optional<SurfaceIndex> skin_index;
+  std::optional<FaceBoxes> skin_boxes;
   std::optional<SurfaceWalk> skin_walk;
 };
 
@@ -160,7 +161,7 @@ Original::Original(const Mesh& given, const Progress& progress)
   lines.emplace(given, edges);
   if (has_layers(edges)) skin = &layers.emplace(without_layers(given));
   if (!progress.add(0)) return;
-  skin_index.emplace(*skin);
+  skin_boxes.emplace(*skin);
   if (!progress.add(0)) return;
   skin_walk.emplace(*skin);
 }
@@ -178,7 +179,7 @@ class Fitting {
         progress_(options.progress),
         steps_(progress_.part(0), 0, kSamplesOfStep),
         edges_(list_edges(level)),
-        guard_(*original.skin_index, *original.skin_walk, steps_),
+        guard_(*original.skin_boxes, *original.skin_walk, steps_),
         fixed_(find_fixed(original.mesh, level, options.fixed)),
         freedom_(freedom),
         samples_(original.mesh, original.face_order,

@@ -36,22 +36,14 @@ SparseSystem::SparseSystem(const Mesh& mesh) : corner_vertex_(mesh.corner_wedge.
   const std::vector<HalfEdge> halves = sorted_edges(mesh);
   row_begin_.assign(mesh.vertex_count() + 1, 0);
   for_each_edge(halves, [&](Edge edge) {
-    ++row_begin_[edge[0].low()];
-    if (!edge[0].is_loop()) ++row_begin_[edge[0].high()];
+    ++row_begin_[edge[0].low() + 1];
+    column_.push_back(edge[0].high());
   });
-  std::exclusive_scan(row_begin_.begin(), row_begin_.end(), row_begin_.begin(), Index{0});
-  column_.resize(row_begin_.back());
-  // By the order of the edges a row gets its smaller neighbours first, then the larger ones, each ascending.
-  std::vector<Index> end(row_begin_.begin(), row_begin_.end() - 1);
-  for_each_edge(halves, [&](Edge edge) {
-    column_[end[edge[0].low()]++] = edge[0].high();
-    if (!edge[0].is_loop()) column_[end[edge[0].high()]++] = edge[0].low();
-  });
-  pair_.resize(corner_vertex_.size());
-  for (Index c = 0; c < corner_vertex_.size(); ++c) {
-    const Index from = corner_vertex_[c], to = corner_vertex_[next_corner(c)];
-    pair_[c] = {number_of(from, to), number_of(to, from)};
-  }
+  std::partial_sum(row_begin_.begin(), row_begin_.end(), row_begin_.begin());
+  column_.shrink_to_fit();
+  entry_.resize(corner_vertex_.size());
+  for (Index c = 0; c < corner_vertex_.size(); ++c)
+    entry_[c] = number_of(corner_vertex_[c], corner_vertex_[next_corner(c)]);
   clear();
 }
 
@@ -61,7 +53,9 @@ void SparseSystem::clear() {
   right_.assign(row_begin_.size() - 1, Vec3{});
 }
 
-Index SparseSystem::number_of(Index row, Index column) const {
+/// Of two vertices, whichever comes first.
+Index SparseSystem::number_of(Index a, Index b) const {
+  const auto [row, column] = std::minmax(a, b);
   const auto begin = column_.begin() + row_begin_[row];
   const auto end = column_.begin() + row_begin_[row + 1];
   return static_cast<Index>(std::lower_bound(begin, end, column) - column_.begin());
@@ -73,8 +67,7 @@ void SparseSystem::add_face(Index face, const std::array<double, 6>& products, c
     const Index corner = 3 * face + k;
     diagonal_[corner_vertex_[corner]].add(metric, products[k]);
     right_[corner_vertex_[corner]] += metric * pulls[k];
-    if (products[3 + k] == 0) continue;
-    for (const Index entry : pair_[corner]) value_[entry].add(metric, products[3 + k]);
+    if (products[3 + k] != 0) value_[entry_[corner]].add(metric, products[3 + k]);
   }
 }
 
@@ -86,17 +79,20 @@ void SparseSystem::add(const Index* vertices, const double* weights, std::size_t
     right_[vertices[i]] += pull * weights[i];
     for (std::size_t j = i + 1; j < count; ++j) {
       const double product = weights[i] * weights[j];
-      if (product == 0) continue;
-      entry(vertices[i], vertices[j]).add(metric, product);
-      entry(vertices[j], vertices[i]).add(metric, product);
+      if (product != 0) value_[number_of(vertices[i], vertices[j])].add(metric, product);
     }
   }
 }
 
+/// What stands below the diagonal adds to rows that are yet to come: each gets its smaller neighbours first.
 void SparseSystem::multiply(const std::vector<Vec3>& x, std::vector<Vec3>& out) const {
+  for (std::size_t row = 0; row < out.size(); ++row) out[row] = diagonal_[row] * x[row];
   for (std::size_t row = 0; row < out.size(); ++row) {
-    Vec3 sum = diagonal_[row] * x[row];
-    for (Index i = row_begin_[row]; i < row_begin_[row + 1]; ++i) sum += value_[i] * x[column_[i]];
+    Vec3 sum = out[row];
+    for (Index i = row_begin_[row]; i < row_begin_[row + 1]; ++i) {
+      sum += value_[i] * x[column_[i]];
+      out[column_[i]] += value_[i] * x[row];
+    }
     out[row] = sum;
   }
 }

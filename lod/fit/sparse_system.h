@@ -32,12 +32,12 @@ class SparseSystem {
   void solve(std::vector<Vec3>& x, int max_steps) const;
 
  private:
-  Index number_of(Index row, Index column) const;
-  Symmetric3& entry(Index row, Index column) { return value_[number_of(row, column)]; }
+  Index number_of(Index a, Index b) const;
   void multiply(const std::vector<Vec3>& x, std::vector<Vec3>& out) const;
 
   std::vector<Index> corner_vertex_;
-  std::vector<std::array<Index, 2>> pair_;  // by corner: the entries of its vertex with the next one, both ways
+  std::vector<Index> entry_;  // by corner: that of its vertex with the next one
+  // Above the diagonal, row by row: below it the same stands again.
   std::vector<Index> row_begin_;
   std::vector<Index> column_;
   std::vector<Symmetric3> value_;

@@ -274,7 +274,7 @@ double PlainEvaluator::curvature_error(Triangles triangles) {
     add(squared_length(b) - product, normal);
   }
   angles(count, cosine.data(), sine.data(), angle.data());
-  for (std::size_t i = 0; i < star_.size; ++i) curvature_after_[i] = state_->curvature[star_.ring_vertex[i]].gaussian;
+  for (std::size_t i = 0; i < star_.size; ++i) curvature_after_[i] = state_->gaussian[star_.ring_vertex[i]];
   const double* next = angle.data();
   for (std::size_t i = 0; i < star_.size; ++i) {
     curvature_after_[i] += *next++;
@@ -285,8 +285,7 @@ double PlainEvaluator::curvature_error(Triangles triangles) {
   double largest = 0;
   for (std::size_t i = 0; i < star_.size; ++i) {
     const Index v = star_.ring_vertex[i];
-    const double before =
-        against_original_ ? static_cast<double>(state_->original_curvature[v]) : state_->curvature[v].gaussian;
+    const double before = against_original_ ? static_cast<double>(state_->original_curvature[v]) : state_->gaussian[v];
     largest = std::max(largest, std::abs(before - curvature_after_[i]));
   }
   return largest;

@@ -8,12 +8,6 @@
 #include "progressive/canonical_face.h"
 
 namespace lodestone::detail {
-namespace {
-
-constexpr std::size_t kUsualRing = 7;  // a little over the mean
-
-}  // namespace
-
 /// New numbers of the full mesh's wedges, vertices and faces; faces are numbered within their group.
 struct RecordBuilder::Numbering {
   explicit Numbering(const Mesh& full)
@@ -31,21 +25,7 @@ RecordBuilder::RecordBuilder(const Mesh& mesh, const Connectivity& connectivity)
   std::sort(materials_.begin(), materials_.end());
   materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
   if (materials_.empty()) materials_.push_back(0);
-  reserve(mesh.vertex_count());
-}
-
-/// Growing would copy; memory that is reserved and not written to costs nothing.
-void RecordBuilder::reserve(std::size_t record_count) {
-  vertex_.reserve(record_count);
-  curvature_error_.reserve(record_count);
-  sector_begin_.reserve(record_count + 1);
-  center_.reserve(record_count);
-  shape_.reserve(record_count);
-  polygon_begin_.reserve(record_count + 1);
-  face_begin_.reserve(record_count + 1);
-  polygons_.reserve(kUsualRing * record_count);
-  faces_.reserve(kUsualRing * record_count);
-  triangles_.reserve(kUsualRing * record_count);
+  for (ChunkedVector<Index>* begin : {&sector_begin_, &polygon_begin_, &face_begin_}) begin->push_back(0);
 }
 
 Index RecordBuilder::group_of(Index face) const {
@@ -60,11 +40,11 @@ void RecordBuilder::add(std::span<const RemovalRecord> copies, double curvature_
     for (const SectorPatch& sector : record.sectors) {
       center_.push_back(sector.center);
       shape_.push_back(sector.shape);
-      polygons_.insert(polygons_.end(), sector.polygon.begin(), sector.polygon.end());
+      polygons_.append(sector.polygon);
       polygon_begin_.push_back(static_cast<Index>(polygons_.size()));
-      faces_.insert(faces_.end(), sector.faces.begin(), sector.faces.end());
+      faces_.append(sector.faces);
       face_begin_.push_back(static_cast<Index>(faces_.size()));
-      triangles_.insert(triangles_.end(), sector.triangles.begin(), sector.triangles.end());
+      triangles_.append(sector.triangles);
     }
   }
   sector_begin_.push_back(static_cast<Index>(center_.size()));

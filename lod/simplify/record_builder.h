@@ -7,6 +7,8 @@
 #include <lodestone/core/removal.h>
 #include <lodestone/lod/progressive_mesh.h>
 
+#include "simplify/chunked_vector.h"
+
 namespace lodestone::detail {
 
 /// Collects removals as they happen and turns them into a progressive mesh, renumbered in order of creation.
@@ -27,7 +29,6 @@ class RecordBuilder {
 
  private:
   struct Numbering;
-  void reserve(std::size_t record_count);
   Index group_of(Index face) const;
   void number_base(ProgressiveMesh& result, Numbering& numbers) const;
   void number_record(std::size_t removal, ProgressiveMesh& result, Numbering& numbers) const;
@@ -39,17 +40,17 @@ class RecordBuilder {
   std::vector<Index> materials_;  // of the groups, ascending
 
   // In order of removal, with the numbers of the full mesh.
-  std::vector<Index> vertex_;
-  std::vector<float> curvature_error_;
+  ChunkedVector<Index> vertex_;
+  ChunkedVector<float> curvature_error_;
   std::vector<std::size_t> round_end_;
-  std::vector<Index> sector_begin_{0};
-  std::vector<Index> center_;
-  std::vector<SectorShape> shape_;
-  std::vector<Index> polygon_begin_{0};
-  std::vector<Index> polygons_;
-  std::vector<Index> face_begin_{0};
-  std::vector<Index> faces_;
-  std::vector<PolygonTriangle> triangles_;
+  ChunkedVector<Index> sector_begin_;
+  ChunkedVector<Index> center_;
+  ChunkedVector<SectorShape> shape_;
+  ChunkedVector<Index> polygon_begin_;
+  ChunkedVector<Index> polygons_;
+  ChunkedVector<Index> face_begin_;
+  ChunkedVector<Index> faces_;
+  ChunkedVector<PolygonTriangle> triangles_;
 };
 
 }  // namespace lodestone::detail

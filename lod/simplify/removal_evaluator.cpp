@@ -277,7 +277,7 @@ AttributeScale RemovalEvaluator::attribute_scale(const SectorPatch& patch, std::
 
 void RemovalEvaluator::gather_outside_curvature() {
   outside_.resize(ring_size());
-  for (std::size_t i = 0; i < ring_size(); ++i) outside_[i] = state_->curvature[ring_vertex_[i]];
+  for (std::size_t i = 0; i < ring_size(); ++i) outside_[i] = state_->curvature_at(ring_vertex_[i]);
   for (std::size_t i = 0; i < fine_corner_.size(); ++i) {
     const std::size_t j = (i + 1) % ring_size();
     const Vec3& a = ring_position_[i];
@@ -574,7 +574,7 @@ double RemovalEvaluator::largest_change() const {
   for (std::size_t i = 0; i < ring_size(); ++i) {
     const double before = options_->reference == Reference::Original
                               ? static_cast<double>(state_->original_curvature[ring_vertex_[i]])
-                              : metric_curvature(*options_, state_->curvature[ring_vertex_[i]]);
+                              : metric_curvature(*options_, state_->curvature_at(ring_vertex_[i]));
     largest = std::max(largest, std::abs(before - metric_curvature(*options_, after_[i])));
   }
   return largest;

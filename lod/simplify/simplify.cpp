@@ -81,7 +81,7 @@ class Simplifier {
  public:
   Simplifier(const Mesh& mesh, Connectivity connectivity, const SimplifyOptions& options)
       : options_(options),
-        state_{mesh, std::move(connectivity), CarriedPoints(mesh), {}, {}, {}},
+        state_{mesh, std::move(connectivity), CarriedPoints(mesh), {}, {}, {}, {}},
         evaluators_(state_, options_),
         builder_(mesh, state_.connectivity),
         bounds_(mesh, options.measure_step, options.progress),
@@ -183,8 +183,11 @@ void Simplifier::prepare() {
   stale_.assign(count, 0);
   verdict_.assign(count, Verdict::Locked);
   claimed_.assign(count, 0);
+  standing_.reserve(count);
   for (Index v = 0; v < count; ++v)
     if (is_standing(v)) standing_.push_back(v);
+  candidates_.reserve(standing_.size());
+  charge_.reserve(standing_.size());
   evaluate(standing_, options_.progress.part(kFirstShare));
   price_pieces();
 }
@@ -585,7 +588,7 @@ void Simplifier::stop_removing() {
   bounds_.stop_measuring();
   evaluators_.stop();
   state_.points = CarriedPoints(Mesh());
-  free(state_.lines, state_.curvature, state_.original_curvature);
+  free(state_.lines, state_.gaussian, state_.curvature, state_.original_curvature);
   free(cost_, verdict_, choice_, stale_, standing_, candidates_, claimed_, dirty_, bent_, looked_at_, batch_,
        along_curve_);
   free(dense_, within_, postponed_);

@@ -62,20 +62,21 @@ double metric_curvature(const SimplifyOptions& options, const VertexCurvature& c
 
 void gather_curvature(SimplifyState& state, const SimplifyOptions& options) {
   const std::size_t count = state.mesh.vertex_count();
-  state.curvature.resize(count);
+  tracks_gaussian_curvature(options) ? state.gaussian.resize(count) : state.curvature.resize(count);
   state.original_curvature.resize(count);
   constexpr std::size_t kChunk = 4096;
   for_each_chunk(count, kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       update_curvature(state, options, static_cast<Index>(v));
-      state.original_curvature[v] = static_cast<float>(metric_curvature(options, state.curvature[v]));
+      state.original_curvature[v] =
+          static_cast<float>(metric_curvature(options, state.curvature_at(static_cast<Index>(v))));
     }
   });
 }
 
 void update_curvature(SimplifyState& state, const SimplifyOptions& options, Index vertex) {
   if (tracks_gaussian_curvature(options)) {
-    state.curvature[vertex].gaussian = gaussian_curvature(state, vertex);
+    state.gaussian[vertex] = gaussian_curvature(state, vertex);
   } else {
     state.curvature[vertex] = vertex_curvature(state.mesh, state.connectivity, vertex);
   }
@@ -85,7 +86,7 @@ void keep_curvature(SimplifyState& state, std::span<const RemovalRecord> records
   if (gaussian.empty()) return;
   const std::vector<Index>& polygon = records.front().sectors.front().polygon;
   for (std::size_t i = 0; i < gaussian.size(); ++i)
-    state.curvature[state.connectivity.vertex_of_wedge(polygon[i])].gaussian = gaussian[i];
+    state.gaussian[state.connectivity.vertex_of_wedge(polygon[i])] = gaussian[i];
 }
 
 void carry_lines(SimplifyState& state, const RemovalRecord& record) {

@@ -19,16 +19,21 @@ struct SimplifyState {
   Connectivity connectivity;
   CarriedPoints points;
   FeatureLines lines;
-  std::vector<VertexCurvature> curvature;  ///< of the current mesh
+  std::vector<double> gaussian;            ///< K̄ of the current mesh where costs need no more; else empty
+  std::vector<VertexCurvature> curvature;  ///< of the current mesh, else
   std::vector<float> original_curvature;   ///< of the full mesh, in the metric's own unit
+
+  VertexCurvature curvature_at(Index vertex) const {
+    return gaussian.empty() ? curvature[vertex] : VertexCurvature{gaussian[vertex], 0, 0};
+  }
 };
 
-/// Whether the metric needs no curvature but K̄, not divided by areas: then `curvature` holds nothing else.
+/// Whether the metric needs no curvature but K̄, not divided by areas.
 inline bool tracks_gaussian_curvature(const SimplifyOptions& options) {
   return options.metric == Metric::Hybrid && options.normalisation == Normalisation::Integral;
 }
 
-/// Fills `curvature` and `original_curvature`.
+/// Fills `gaussian` or `curvature`, and `original_curvature`.
 void gather_curvature(SimplifyState& state, const SimplifyOptions& options);
 
 /// Works out the curvature of a vertex anew.

@@ -10,6 +10,7 @@
 #include <lodestone/lod/surface_index.h>
 #include <lodestone/pipeline/build_asset.h>
 
+#include "distance/face_boxes.h"
 #include "distance/patch_bound.h"
 #include "distance/surface_walk.h"
 #include "simplify/carried_points.h"
@@ -55,10 +56,11 @@ TEST_CASE("structures take the bytes that the table says") {
   CHECK(memory_of(mesh, [&] { return *Connectivity::build(mesh); }).stays <= 26 * kTolerance);
   CHECK(memory_of(mesh, [&] { return detail::CarriedPoints(mesh); }).stays <= 40 * kTolerance);
   CHECK(memory_of(mesh, [&] { return SurfaceIndex(mesh); }).stays <= 108 * kTolerance);
-  CHECK(memory_of(mesh, [&] { return detail::SurfaceWalk(mesh); }).stays <= 202 * kTolerance);
+  CHECK(memory_of(mesh, [&] { return detail::SurfaceWalk(mesh); }).stays <= 136 * kTolerance);
+  CHECK(memory_of(mesh, [&] { return detail::FaceBoxes(mesh); }).stays <= 3.5 * kTolerance);
   CHECK(memory_of(mesh, [&] { return detail::opposite_corners(mesh); }).stays <= 12 * kTolerance);
-  CHECK(memory_of(mesh, [&] { return LevelDeviation(mesh); }).stays <= 189 * kTolerance);
-  CHECK(memory_of(mesh, [&] { return LevelFitter(mesh); }).stays <= 314 * kTolerance);
+  CHECK(memory_of(mesh, [&] { return LevelDeviation(mesh); }).stays <= 69 * kTolerance);
+  CHECK(memory_of(mesh, [&] { return LevelFitter(mesh); }).stays <= 144 * kTolerance);
   const SimplifyOptions unmeasured = measured_each(0);
   CHECK(memory_of(mesh, [&] { return simplify(mesh, unmeasured); }).stays <= 51 * kTolerance);
 }
@@ -68,13 +70,13 @@ TEST_CASE("structures take the bytes that the table says") {
 TEST_CASE("whole jobs take no more at their peak than the table says") {
   const Mesh mesh = ball();
   with_threads(1, [&] {
-    CHECK(memory_of(mesh, [&] { return simplify(mesh, measured_each(0)); }).peak <= 203 * kTolerance);
-    CHECK(memory_of(mesh, [&] { return simplify(mesh, measured_each(0.1)); }).peak <= 567 * kTolerance);
+    CHECK(memory_of(mesh, [&] { return simplify(mesh, measured_each(0)); }).peak <= 174 * kTolerance);
+    CHECK(memory_of(mesh, [&] { return simplify(mesh, measured_each(0.1)); }).peak <= 282 * kTolerance);
     const Result<SimplifyResult> result = simplify(mesh, measured_each(0));
     REQUIRE(result);
     const Mesh half = extract_level(result->mesh, position_for_faces(result->mesh, mesh.face_count() / 2));
     const LevelFitter fitter(mesh);
-    CHECK(memory_of(mesh, [&] { return fitter.fit(half); }).peak <= 621 * kTolerance);
+    CHECK(memory_of(mesh, [&] { return fitter.fit(half); }).peak <= 543 * kTolerance);
     CHECK(memory_of(mesh, [&] { return measure_deviation(mesh, half); }).peak <= 413 * kTolerance);
   });
 }
@@ -85,7 +87,7 @@ TEST_CASE("a build takes no more at its peak than the table says") {
   BuildOptions options;
   options.effort = 2;
   with_threads(1,
-               [&] { CHECK(memory_of(mesh, [&] { return build_asset(scene, options); }).peak <= 1003 * kTolerance); });
+               [&] { CHECK(memory_of(mesh, [&] { return build_asset(scene, options); }).peak <= 700 * kTolerance); });
 }
 #endif
 

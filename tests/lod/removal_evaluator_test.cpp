@@ -80,7 +80,7 @@ TEST_CASE("plain stars are judged by the same rules and charged the same on the 
       auto connectivity = Connectivity::build(mesh);
       REQUIRE(connectivity);
       mark_creases(mesh, options, *connectivity);
-      SimplifyState state{mesh, std::move(*connectivity), CarriedPoints(mesh), {}, {}, {}};
+      SimplifyState state{mesh, std::move(*connectivity), CarriedPoints(mesh), {}, {}, {}, {}};
       gather_curvature(state, options);
       const AttributeCost attributes(mesh, options.weights);
       const FaceRules rules(mesh);
