@@ -125,11 +125,14 @@ double PatchBound::clipped_height(const Points& subject) {
   using Corner = std::array<double, 4>;  // What is seen of a point changes evenly along an edge.
   constexpr std::size_t kMost = 9;       // 3, 4, 6, 9 at worst, however they are rounded.
   std::array<std::array<Corner, kMost>, 2> polygons;
-  std::size_t size = 3;
+  std::size_t size = 3, now = 0;
   for (std::size_t j = 0; j < size; ++j) polygons[0][j] = subject[j].seen;
+  const unsigned outside = subject[0].outside | subject[1].outside | subject[2].outside;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::array<Corner, kMost>& polygon = polygons[i % 2];
-    std::array<Corner, kMost>& kept = polygons[(i + 1) % 2];
+    if ((outside >> i & 1) == 0) continue;
+    const std::array<Corner, kMost>& polygon = polygons[now];
+    now = 1 - now;
+    std::array<Corner, kMost>& kept = polygons[now];
     std::size_t kept_size = 0;
     for (std::size_t j = 0; j < size; ++j) {
       const Corner& p = polygon[j];
@@ -145,7 +148,7 @@ double PatchBound::clipped_height(const Points& subject) {
     size = kept_size;
   }
   double height = 0;
-  for (std::size_t j = 0; j < size; ++j) height = std::max(height, std::abs(polygons[1][j][3]));
+  for (std::size_t j = 0; j < size; ++j) height = std::max(height, std::abs(polygons[now][j][3]));
   return height;
 }
 
@@ -166,47 +169,70 @@ PatchBound::Points PatchBound::project(const Frame& frame, Index face) const {
 
 /// Starts the patch with a face, or where that is not over the triangle with one of those around it.
 void PatchBound::start_patch(const Frame& frame, Index start) {
-  const auto starts = [&](Index face) {
-    points_.push_back(project(frame, face));
-    if (!is_apart(points_.back()) && take(face)) return true;
-    points_.pop_back();
-    return false;
-  };
-  if (starts(start)) return;
+  const Points points = project(frame, start);
+  if (start_with(start, points)) return;
   for (Index corner = 3 * start; corner < 3 * start + 3; ++corner)
-    if (any_face_around(opposite_, corner, starts)) return;
+    if (start_around(frame, corner, points)) return;
+}
+
+/// Starts with the first of the other faces around a corner that is over the triangle; `start` are the points of the
+/// corner's face. False where none is, as far as the next border one way round.
+bool PatchBound::start_around(const Frame& frame, Index corner, const Points& start) {
+  Points points = start;
+  for (Index at = corner; opposite_[at] != kNoIndex;) {
+    const Index other = opposite_[at];
+    const Point centre = points[at % 3], shared = points[next_corner(at) % 3];
+    at = next_corner(other);
+    if (at == corner) return false;
+    points[at % 3] = centre;
+    points[other % 3] = shared;
+    points[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
+    if (start_with(face_of_corner(at), points)) return true;
+  }
+  return false;
+}
+
+bool PatchBound::start_with(Index face, const Points& points) {
+  if (is_apart(points)) return false;
+  last_.push_back({points});
+  if (take(face)) return true;
+  last_.pop_back();
+  return false;
 }
 
 /// Grows the patch across those edges of one of its faces that enter the triangle; all others may be part of the
 /// outline, and add to the winding: an edge of two faces of the patch takes away for one what it adds for the other.
 /// False where the outline enters the triangle.
-bool PatchBound::grow(const Frame& frame, Index face, const Points& points, int& winding) {
+bool PatchBound::grow(const Frame& frame, Index face, const Taken& taken, int& winding) {
   for (Index i = 0; i < 3; ++i) {
-    const Point &p = points[i], &q = points[next_corner(i)];
+    if (i == taken.entered) continue;
+    const Point &p = taken.points[i], &q = taken.points[next_corner(i)];
     if (is_apart(p, q))
       winding += crossing(p, q);
-    else if (!take_across(frame, points, 3 * face + i))
+    else if (!take_across(frame, face, taken.points, i))
       return false;
   }
   return true;
 }
 
-/// Takes the face beyond the edge that leaves a corner of one of the patch, if there is one; `points` are that one's.
-bool PatchBound::take_across(const Frame& frame, const Points& points, Index corner) {
-  const Index other = opposite_[corner];
+/// Takes the face beyond an edge of one of the patch, if there is one; `points` are that one's.
+bool PatchBound::take_across(const Frame& frame, Index face, const Points& points, Index edge) {
+  const Index other = opposite_[3 * face + edge];
   if (other == kNoIndex) return false;
-  const Index face = face_of_corner(other);
-  if (taken_in_[face] == run_) return true;
-  Points& beyond = points_.emplace_back();
-  beyond[other % 3] = points[next_corner(corner) % 3];
-  beyond[next_corner(other) % 3] = points[corner % 3];
-  beyond[previous_corner(other) % 3] = frame.project(surface_.corner_position(previous_corner(other)));
-  return take(face);
+  const Index beyond = face_of_corner(other);
+  if (taken_in_[beyond] == run_) return true;
+  const Index from = other - 3 * beyond, to = next_corner(from), apex = previous_corner(from);
+  Taken& taken = last_.emplace_back();
+  taken.entered = from;
+  taken.points[from] = points[next_corner(edge)];
+  taken.points[to] = points[edge];
+  taken.points[apex] = frame.project(surface_.corner_position(3 * beyond + apex));
+  return take(beyond);
 }
 
 /// Takes a face, whose points are there, into the patch if it is not too high over the triangle.
 bool PatchBound::take(Index face) {
-  const Points& points = points_.back();
+  const Points& points = last_.back().points;
   double height = std::max({std::abs(points[0].height()), std::abs(points[1].height()), std::abs(points[2].height())});
   if (height > limit_) height = clipped_height(points);
   if (height > limit_) return false;
@@ -218,7 +244,7 @@ bool PatchBound::take(Index face) {
 
 double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, double target, double slack) {
   patch_.clear();
-  points_.clear();
+  last_.clear();
   if (++run_ == 0) {
     std::fill(taken_in_.begin(), taken_in_.end(), run_);
     ++run_;
@@ -230,10 +256,10 @@ double PatchBound::bound(const std::array<Vec3, 3>& triangle, Index start, doubl
   start_patch(frame, start);
   int winding = 0;
   for (std::size_t i = 0; i < patch_.size();) {
-    before_.swap(points_);
-    points_.clear();
-    for (const Points& points : before_)
-      if (!grow(frame, patch_[i++], points, winding)) return kNone;
+    before_.swap(last_);
+    last_.clear();
+    for (const Taken& taken : before_)
+      if (!grow(frame, patch_[i++], taken, winding)) return kNone;
   }
   return winding != 0 ? height_ + slack : kNone;
 }

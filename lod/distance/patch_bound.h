@@ -56,6 +56,12 @@ class PatchBound {
   };
   using Points = std::array<Point, 3>;
 
+  /// A face of the patch.
+  struct Taken {
+    Points points;
+    Index entered = kNoIndex;  // By which of its edges it was come to; its first faces by none.
+  };
+
   /// What sees them: the triangle in its own plane, a little smaller than it is.
   struct Frame {
     Vec3 centre;
@@ -72,14 +78,16 @@ class PatchBound {
 
   Points project(const Frame& frame, Index face) const;
   void start_patch(const Frame& frame, Index start);
-  bool grow(const Frame& frame, Index face, const Points& points, int& winding);
-  bool take_across(const Frame& frame, const Points& points, Index corner);
+  bool start_around(const Frame& frame, Index corner, const Points& start);
+  bool start_with(Index face, const Points& points);
+  bool grow(const Frame& frame, Index face, const Taken& taken, int& winding);
+  bool take_across(const Frame& frame, Index face, const Points& points, Index edge);
   bool take(Index face);
 
   const Mesh& surface_;
   std::span<const Index> opposite_;
   std::vector<Index> patch_;
-  std::vector<Points> points_, before_;  // Of the patch's last faces: those being taken, and those it grows across.
+  std::vector<Taken> last_, before_;     // Of the patch's faces: those taken last, and those it grows across.
   std::vector<std::uint16_t> taken_in_;  // By face: the last run that it was in the patch of, since these began anew.
   std::uint16_t run_ = 0;
   double limit_ = 0;   // That heights may have in this run.
