@@ -36,12 +36,11 @@ using detail::Triangle;
 
 constexpr std::size_t kWidth = detail::kRunWidth;
 constexpr double kBoxSlack = 1e-6;       // Of the largest coordinate in a node: more than single precision loses there.
-constexpr double kFarSlack = 1 + 1e-12;  // Relative, of squared distances: for points far outside a node.
+constexpr double kAxesSlack = 1 + 1e-6;  // Relative, of squared distances: single precision of a node's axes, and more.
 constexpr double kSingleSlack = 1e-5;    // The same where they are computed in single precision.
 constexpr double kFarthest = 1e15;       // Points farther away are pulled in, for that: squares of floats are finite.
 constexpr double kTogether = 8;          // How far apart points searched for at once may lie, in sizes of a face.
-constexpr std::size_t kMostLevels = 17;
-constexpr std::size_t kStackSize = 64;  // Three entries stay behind on each level.
+constexpr std::size_t kStackSize = 64;   // Three entries stay behind on each level.
 
 /// A box by its centre and half size along each axis; the default contains nothing.
 struct CentredBox {
@@ -52,20 +51,21 @@ struct CentredBox {
 
 using Local = std::array<double, 3>;
 
-/// Coordinates relative to an origin, along axes and in units of their own.
+/// Coordinates relative to an origin and along axes. Lengths are true to kAxesSlack in them. The mesh is scaled before,
+/// see SurfaceIndex::Impl::scale.
 struct Frame {
   Vec3f origin;
-  std::array<Vec3, 3> axes;  // The mesh's, in local coordinates.
+  std::array<Vec3f, 3> axes;  // The mesh's, in local coordinates.
 
   Local local(const Vec3& p) const {
     const Vec3 d = p - Vec3(origin);
-    const Vec3 q = axes[0] * d.x + axes[1] * d.y + axes[2] * d.z;
+    const Vec3 q = Vec3(axes[0]) * d.x + Vec3(axes[1]) * d.y + Vec3(axes[2]) * d.z;
     return {q.x, q.y, q.z};
   }
 };
 
 /// The boxes of four children, transposed for arithmetic on four lanes.
-struct alignas(64) Node {
+struct alignas(16) Node {
   Frame frame;
   float centre[3][kWidth];
   float half[3][kWidth];
@@ -179,10 +179,10 @@ std::size_t hash_of(const Triangle& triangle) {
 
 Vec3 point(const Local& p) { return {p[0], p[1], p[2]}; }
 
-/// `axes` in the mesh's coordinates; `scale` is what lengths are multiplied by.
-Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes, double scale) {
-  const Vec3 u = axes[0] * scale, v = axes[1] * scale, w = axes[2] * scale;
-  return {origin, {Vec3{u.x, v.x, w.x}, Vec3{u.y, v.y, w.y}, Vec3{u.z, v.z, w.z}}};
+/// `axes` in the mesh's coordinates.
+Frame make_frame(const Vec3f& origin, const std::array<Vec3, 3>& axes) {
+  const auto& [u, v, w] = axes;
+  return {origin, {to_float({u.x, v.x, w.x}), to_float({u.y, v.y, w.y}), to_float({u.z, v.z, w.z})}};
 }
 
 }  // namespace
@@ -203,8 +203,7 @@ struct SurfaceIndex::Impl {
   void order_faces(const Mesh& mesh);
   std::vector<Index> find_distinct(std::span<const Triangle> all);
   void build_nodes();
-  template <class RunAt>
-  void add_level(std::size_t child_size, std::size_t child_count, const RunAt& run_at, std::vector<Run>& runs);
+  Run build_node(std::size_t level, std::size_t number, std::size_t child_size);
   Node make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children, const Run& all) const;
   ChildExtents child_extents(const Frame& frame, std::size_t begin, std::size_t child_size) const;
 };
@@ -216,7 +215,7 @@ namespace {
 class Search {
  public:
   Search(const SurfaceIndex::Impl& tree, const Vec3& p, double limit, std::vector<Index>* all = nullptr)
-      : tree_(tree), p_(p), best_squared_(limit * limit), all_(all) {
+      : tree_(tree), p_(p), scaled_(p * tree.scale), best_squared_(limit * limit), all_(all) {
     hit_.distance = std::numeric_limits<double>::infinity();
     update_reach();
   }
@@ -268,7 +267,7 @@ class Search {
     ++hit_.visits;
     const std::uint32_t level = item.level - 1;
     const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
-    const std::array<double, kWidth> distances = box_distances(node, node.frame.local(p_));
+    const std::array<double, kWidth> distances = box_distances(node, node.frame.local(scaled_));
     const std::size_t base = size_;
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       if (!(distances[i] <= reach_)) continue;
@@ -289,6 +288,7 @@ class Search {
 
   const SurfaceIndex::Impl& tree_;
   Vec3 p_;
+  Vec3 scaled_;  // For boxes.
   double best_squared_;
   std::vector<Index>* all_;
   double reach_ = 0;
@@ -312,7 +312,7 @@ class PacketSearch {
 
   /// Adds one of at most kPoints points; `place` is a triangle that is likely near it, or kNoIndex.
   void add(const Vec3& p, Index place) {
-    const Vec3 near = tree_.cut_off(p);
+    const Vec3 near = tree_.cut_off(p) * tree_.scale;
     for (std::size_t i = count_; i < kPoints; ++i) x_[i] = near.x, y_[i] = near.y, z_[i] = near.z;
     points_[count_++] = p;
     if (place != kNoIndex) test(count_ - 1, place);
@@ -368,19 +368,16 @@ class PacketSearch {
   void open(const Item& item, Mask mask) {
     const std::uint32_t level = item.level - 1;
     const Node& node = tree_.nodes[tree_.level_begin[level] + item.place];
-    std::array<std::array<double, kPoints>, 3> local;
+    const Vec3f& origin = node.frame.origin;
+    const std::array<Vec3f, 3>& axes = node.frame.axes;
     Lanes u, v, w;
     for (std::size_t i = 0; i < kPoints; ++i) {
-      const double x = x_[i] - static_cast<double>(node.frame.origin.x);
-      const double y = y_[i] - static_cast<double>(node.frame.origin.y);
-      const double z = z_[i] - static_cast<double>(node.frame.origin.z);
-      const std::array<Vec3, 3>& axes = node.frame.axes;
-      local[0][i] = axes[0].x * x + axes[1].x * y + axes[2].x * z;
-      local[1][i] = axes[0].y * x + axes[1].y * y + axes[2].y * z;
-      local[2][i] = axes[0].z * x + axes[1].z * y + axes[2].z * z;
-      u[i] = static_cast<float>(local[0][i]);
-      v[i] = static_cast<float>(local[1][i]);
-      w[i] = static_cast<float>(local[2][i]);
+      const auto x = static_cast<float>(x_[i] - static_cast<double>(origin.x));
+      const auto y = static_cast<float>(y_[i] - static_cast<double>(origin.y));
+      const auto z = static_cast<float>(z_[i] - static_cast<double>(origin.z));
+      u[i] = axes[0].x * x + axes[1].x * y + axes[2].x * z;
+      v[i] = axes[0].y * x + axes[1].y * y + axes[2].y * z;
+      w[i] = axes[0].z * x + axes[1].z * y + axes[2].z * z;
     }
     const std::size_t base = size_;
     for (std::uint32_t child = 0; child < kWidth; ++child) {
@@ -395,7 +392,7 @@ class PacketSearch {
       if (wanted == 0) continue;
       for (Mask open = wanted & ~no_farther(below.distances, surely_within_); open != 0; open &= open - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(open));
-        const double there = box_distances(node, {local[0][i], local[1][i], local[2][i]})[child];
+        const double there = box_distances(node, node.frame.local({x_[i], y_[i], z_[i]}))[child];
         if (!(there <= reach_[i])) wanted &= ~(Mask{1} << i);
       }
       if (wanted != 0 && level > 0) push(below, base);
@@ -415,7 +412,7 @@ class PacketSearch {
   const SurfaceIndex::Impl& tree_;
   std::size_t count_ = 0;
   std::array<Vec3, kPoints> points_;
-  std::array<double, kPoints> x_, y_, z_;  // For boxes.
+  std::array<double, kPoints> x_, y_, z_;  // Scaled, for boxes.
   std::array<double, kPoints> best_squared_;
   std::array<double, kPoints> reach_;
   Lanes within_, surely_within_;  // The reach in single precision, from above and from below.
@@ -445,7 +442,7 @@ Vec3 SurfaceIndex::Impl::cut_off(const Vec3& p) const {
 /// What four times the squared distances of boxes are compared with, where triangles are wanted that are no farther
 /// than a distance, given by its square. Finite, so that boxes that contain nothing stay out of it.
 double SurfaceIndex::Impl::reach(double squared) const {
-  return std::min(4 * squared * scale * scale * kFarSlack, std::numeric_limits<double>::max());
+  return std::min(4 * squared * scale * scale * kAxesSlack, std::numeric_limits<double>::max());
 }
 
 void SurfaceIndex::Impl::order_faces(const Mesh& mesh) {
@@ -485,50 +482,46 @@ std::vector<Index> SurfaceIndex::Impl::find_distinct(std::span<const Triangle> a
 }
 
 void SurfaceIndex::Impl::build_nodes() {
-  nodes.reserve(triangles.size() / (kWidth - 1) + kMostLevels);
-  std::vector<Run> runs;
+  std::size_t node_count = 0;
+  for (std::size_t children = triangles.size();;) {
+    children = (children + kWidth - 1) / kWidth;
+    level_begin.push_back(node_count);
+    node_count += children;
+    if (children == 1) break;
+  }
+  nodes.resize(node_count);
   std::size_t child_size = 1;
-  std::size_t child_count = triangles.size();
-  do {
-    const std::vector<Run> below = std::exchange(runs, {});
-    add_level(
-        child_size, child_count, [&](std::size_t i) { return child_size > 1 ? below[i] : run_of(triangles[i]); }, runs);
-    child_size *= kWidth;
-    child_count = runs.size();
-  } while (child_count > 1);
+  for (std::size_t level = 1; level < level_begin.size(); ++level) child_size *= kWidth;
+  build_node(level_begin.size() - 1, 0, child_size);
 }
 
-/// Appends the nodes above runs of `child_size` triangles each, and their own runs to `runs`.
-template <class RunAt>
-void SurfaceIndex::Impl::add_level(std::size_t child_size, std::size_t child_count, const RunAt& run_at,
-                                   std::vector<Run>& runs) {
-  level_begin.push_back(nodes.size());
-  runs.reserve((child_count + kWidth - 1) / kWidth);
-  std::vector<Run> children;
-  for (std::size_t first = 0; first < child_count; first += kWidth) {
-    children.clear();
-    Run all;
-    for (std::size_t i = first; i < std::min(first + kWidth, child_count); ++i) {
-      children.push_back(run_at(i));
-      all.add(children.back());
-    }
-    nodes.push_back(make_node(first * child_size, child_size, children, all));
-    runs.push_back(all);
+/// Builds a node, after those below it, above runs of `child_size` triangles each; returns the run of all of them.
+Run SurfaceIndex::Impl::build_node(std::size_t level, std::size_t number, std::size_t child_size) {
+  const std::size_t begin = kWidth * number * child_size;
+  std::array<Run, kWidth> children;
+  Run all;
+  std::size_t count = 0;
+  for (; count < kWidth && begin + count * child_size < triangles.size(); ++count) {
+    children[count] = level > 0 ? build_node(level - 1, kWidth * number + count, child_size / kWidth)
+                                : run_of(triangles[begin + count]);
+    all.add(children[count]);
   }
+  nodes[level_begin[level] + number] = make_node(begin, child_size, std::span(children).first(count), all);
+  return all;
 }
 
 /// Makes the node of the triangles from `begin` on, along those axes that leave the smaller boxes.
 Node SurfaceIndex::Impl::make_node(std::size_t begin, std::size_t child_size, std::span<const Run> children,
                                    const Run& all) const {
   Node node;
-  const Vec3f origin = to_float(all.spread.mean);
-  node.frame = make_frame(origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, scale);
+  const Vec3f origin = to_float(all.spread.mean * scale);
+  node.frame = make_frame(origin, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}});
   ChildExtents extents;
   for (std::size_t i = 0; i < children.size(); ++i) {
-    extents[i].add(node.frame.local(point(children[i].box.low)));
-    extents[i].add(node.frame.local(point(children[i].box.high)));
+    extents[i].add(node.frame.local(point(children[i].box.low) * scale));
+    extents[i].add(node.frame.local(point(children[i].box.high) * scale));
   }
-  const Frame turned = make_frame(origin, all.spread.principal_axes(), scale);
+  const Frame turned = make_frame(origin, all.spread.principal_axes());
   const ChildExtents turned_extents = child_extents(turned, begin, child_size);
   if (half_area(turned_extents) < half_area(extents)) {
     node.frame = turned;
@@ -547,7 +540,7 @@ ChildExtents SurfaceIndex::Impl::child_extents(const Frame& frame, std::size_t b
     const std::size_t end = std::min(begin + (child + 1) * child_size, triangles.size());
     for (std::size_t i = begin + child * child_size; i < end; ++i) {
       for (const Vec3f& corner : {triangles[i].a, triangles[i].b, triangles[i].c}) {
-        extents[child].add(frame.local(Vec3(corner)));
+        extents[child].add(frame.local(Vec3(corner) * scale));
       }
     }
   }
