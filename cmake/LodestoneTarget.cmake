@@ -13,6 +13,9 @@ function(lodestone_settings target)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+    # To clang a sanitized vector's operator[] is too large to be inlined, and at -O1 everything is: with it inlined, tests take half.
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-finline-functions>
+                                             "$<$<COMPILE_LANG_AND_ID:CXX,Clang>:SHELL:-mllvm -inline-threshold=600>")
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()
