@@ -26,6 +26,8 @@ namespace {
 
 using Face = std::array<Index, 3>;
 
+constexpr CompactCoding kCodings[] = {CompactCoding::Small, CompactCoding::Fast};
+
 ProgressiveMesh progressive(const Mesh& mesh, double dense_rounds) {
   SimplifyOptions options;
   options.dense_rounds = dense_rounds;
@@ -191,31 +193,33 @@ std::vector<NamedShape> plain_shapes() {
 }  // namespace
 
 TEST_CASE("a compact stream decodes to the mesh it was made of, on the grid, and to its level after every round") {
-  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   for (const NamedShape& shape : plain_shapes())
-    for (const double dense_rounds : {0.0, 1.5, 100.0})
-      for (const int bits : {8, 12, 16}) {
-        INFO(shape.name << ", rounds of " << dense_rounds << ", " << bits << " bits");
-        const ProgressiveMesh mesh = progressive(shape.soup, dense_rounds);
-        const CompactStream stream = encoded(mesh, bits, coding);
-        check_same(mesh, stream, decoded(stream.bytes), bits);
-      }
+    for (const double dense_rounds : {0.0, 1.5, 100.0}) {
+      const ProgressiveMesh mesh = progressive(shape.soup, dense_rounds);
+      for (const CompactCoding coding : kCodings)
+        for (const int bits : {8, 12, 16}) {
+          CAPTURE(shape.name, dense_rounds, coding, bits);
+          const CompactStream stream = encoded(mesh, bits, coding);
+          check_same(mesh, stream, decoded(stream.bytes), bits);
+        }
+    }
 }
 
 TEST_CASE("every progressive mesh can be encoded: seams, groups, attributes, borders, sheets, pieces that vanish") {
-  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   for (const NamedShape& shape : all_shapes()) {
     if (mesh_of(shape.soup).face_count() == 0) continue;
     for (const bool vanish : {false, true})
       for (const double dense_rounds : {0.0, 1.5}) {
-        INFO(shape.name << ", rounds of " << dense_rounds << (vanish ? ", to nothing" : ""));
         SimplifyOptions options;
         options.dense_rounds = dense_rounds;
         options.vanish = vanish;
         const auto result = simplify(mesh_of(shape.soup), options);
         REQUIRE(result);
-        const CompactStream stream = encoded(result->mesh, 14, coding);
-        check_same(result->mesh, stream, decoded(stream.bytes), 14);
+        for (const CompactCoding coding : kCodings) {
+          CAPTURE(shape.name, dense_rounds, vanish, coding);
+          const CompactStream stream = encoded(result->mesh, 14, coding);
+          check_same(result->mesh, stream, decoded(stream.bytes), 14);
+        }
       }
   }
 }
@@ -338,7 +342,6 @@ TEST_CASE("models cost what they are said to, and come back") {
 }
 
 TEST_CASE("the meshes of real scenes come back with all their attributes") {
-  const CompactCoding coding = GENERATE(CompactCoding::Small, CompactCoding::Fast);
   LODESTONE_SKIP_WITHOUT_MODELS();
   const std::size_t most_faces = kReduced ? 1000 : 40000;
   std::size_t count = 0;
@@ -350,8 +353,11 @@ TEST_CASE("the meshes of real scenes come back with all their attributes") {
         if (given.mesh.face_count() > most_faces) continue;
         INFO(path << ", " << given.name);
         const ProgressiveMesh mesh = progressive(given.mesh, 1.5);
-        const CompactStream stream = encoded(mesh, 14, coding);
-        check_same(mesh, stream, decoded(stream.bytes), 14);
+        for (const CompactCoding coding : kCodings) {
+          CAPTURE(coding);
+          const CompactStream stream = encoded(mesh, 14, coding);
+          check_same(mesh, stream, decoded(stream.bytes), 14);
+        }
         ++count;
       }
     }
