@@ -196,12 +196,12 @@ TEST_CASE(
     CHECK(level.face_count() == faces);
     return measure_deviation(mesh, level).maximum() / bounding_box(mesh).diagonal();
   };
-  for (const int n : {12, 48}) {
+  for (const int n : {12, kReduced ? 24 : 48}) {
     INFO(n << " points along an edge");
     CHECK(farthest_at(cut_box(n), 12) < 1e-6);
     CHECK(farthest_at(askew(cut_box(n)), 12) < 1e-6);
   }
-  for (const int n : {4, 8}) {
+  for (const int n : {4, kReduced ? 5 : 8}) {
     INFO(n << " squares along an edge");
     CHECK(farthest_at(crowded_box(n), 12) < 1e-6);
     CHECK(farthest_at(askew(crowded_box(n)), 12) < 1e-6);
@@ -209,8 +209,9 @@ TEST_CASE(
   for (const int arc : {4, 8}) {
     INFO(arc << " steps around a corner");
     const std::size_t outline = 4 * (static_cast<std::size_t>(arc) + 1);
-    CHECK(farthest_at(rounded_plate(arc, 40), 4 * outline - 4) < 1e-6);
-    CHECK(farthest_at(askew(rounded_plate(arc, 40)), 4 * outline - 4) < 1e-6);
+    const int n = kReduced ? 20 : 40;
+    CHECK(farthest_at(rounded_plate(arc, n), 4 * outline - 4) < 1e-6);
+    CHECK(farthest_at(askew(rounded_plate(arc, n)), 4 * outline - 4) < 1e-6);
   }
 }
 
@@ -458,8 +459,10 @@ TEST_CASE("slivers go like other faces, and no level has worse ones than the mes
     return worst;
   };
   for (const TriangleSoup& soup :
-       {rod(64), rod(200), disc(64), disc(400), askew(rod(96)), fan(60, 1e-4), double_cone(200), cut_box(40),
-        askew(cut_box(40)), crowded_box(8), seam_sphere(200, 3), faceted_cylinder(300, 1)}) {
+       {rod(64), rod(kReduced ? 100 : 200), disc(64), disc(kReduced ? 150 : 400), askew(rod(96)), fan(60, 1e-4),
+        double_cone(kReduced ? 100 : 200), cut_box(kReduced ? 20 : 40), askew(cut_box(kReduced ? 20 : 40)),
+        crowded_box(kReduced ? 5 : 8), seam_sphere(kReduced ? 100 : 200, 3),
+        faceted_cylinder(kReduced ? 150 : 300, 1)}) {
     const Mesh mesh = mesh_of(soup);
     INFO(mesh.face_count() << " faces, the worst of shape " << worst_shape(mesh));
     const SimplifyResult result = simplified(mesh);
@@ -667,7 +670,9 @@ TEST_CASE("dense rounds lead to the same finest level by fewer stretches of remo
 }
 
 TEST_CASE("any number of threads gives the same records and bounds") {
-  for (const TriangleSoup& soup : {icosphere(5, 0.05, 1), seam_sphere(96, 64), terrain(80, 2)}) {
+  for (const TriangleSoup& soup :
+       {icosphere(kReduced ? 4 : 5, 0.05, 1), seam_sphere(kReduced ? 48 : 96, kReduced ? 32 : 64),
+        terrain(kReduced ? 40 : 80, 2)}) {
     const Mesh mesh = mesh_of(soup);
     ProgressiveMesh expected;
     with_threads(1, [&] { expected = simplify(mesh)->mesh; });
