@@ -81,7 +81,10 @@ bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std
   if (++move_count_ > kMostMovesEach * limits_.most_vertices) return false;
   Vec3i to = targets.empty() ? Vec3i{} : targets[vertex];
   if (!shapes_->code_move(coder, mesh_, vertex, half, positions_, to)) return false;
-  if (!(to == positions_[vertex])) moves_.push_back({star, vertex, positions_[vertex], to});
+  if (!(to == positions_[vertex])) {
+    moves_.push_back({star, vertex, positions_[vertex], to});
+    patch_coder_.note_move(vertex);
+  }
   positions_[vertex] = to;
   moved_[vertex] = 1;
   --unmoved_count_;

@@ -47,97 +47,152 @@ MixedPatchModel::MixedPatchModel()
 void MixedPatchModel::start(const PatchWalk& walk) {
   mesh_ = walk.mesh;
   positions_ = walk.positions;
-  round_ = walk.round;
   const PatchMesh& mesh = *mesh_;
   const std::size_t face_count = mesh.face_count();
-  normals_.resize(face_count);
-  face_logs_.resize(face_count);
-  std::int64_t logs = 0;
-  for (Index f = 0; f < face_count; ++f) {
-    const Vec3i& a = positions_[mesh.from(3 * f)];
-    Vec3i n = cross(positions_[mesh.from(3 * f + 1)] - a, positions_[mesh.from(3 * f + 2)] - a);
-    const int shift = shorten(n, 30);
-    face_logs_[f] = static_cast<std::int16_t>(log2_16(squared(n)) + 32 * shift);
-    logs += face_logs_[f];
-    shorten(n, 15);
-    normals_[f] = n;
-  }
-  flat_.assign(3 * face_count, 0);
-  mean_face_log_ = face_count == 0 ? 0 : static_cast<int>(logs / static_cast<std::int64_t>(face_count));
+  look_at_faces(walk);
+  mean_face_log_ = face_count == 0 ? 0 : static_cast<int>(sum_of_face_logs_ / static_cast<std::int64_t>(face_count));
+  ages_.resize(face_count);
+  for (Index f = 0; f < face_count; ++f)
+    ages_[f] = static_cast<std::uint8_t>(std::min(walk.round - mesh.made_in(f), kAges) - 1);
   around_.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const auto degree = static_cast<std::int32_t>(mesh.degree(v));
-    around_[v] = {degree, degree, 0};
+    around_[v] = {std::min(degree, static_cast<std::int32_t>(kDegrees)), degree, degree, 0};
   }
 }
 
-/// 0 for faces that the last round made; the oldest are alike.
-std::uint32_t MixedPatchModel::age(Index face) const { return std::min(round_ - mesh_->made_in(face), kAges) - 1; }
+/// Looks anew at the faces that have changed, and forgets what was seen around them.
+void MixedPatchModel::look_at_faces(const PatchWalk& walk) {
+  const std::size_t face_count = mesh_->face_count();
+  normals_.resize(face_count);
+  face_logs_.resize(face_count);
+  flats_.resize(3 * face_count);
+  asked_.assign(3 * face_count, 0);
+  looks_.resize(face_count);
+  for (const Index f : walk.changed) {
+    const Vec3i& a = positions_[mesh_->from(3 * f)];
+    Vec3i n = cross(positions_[mesh_->from(3 * f + 1)] - a, positions_[mesh_->from(3 * f + 2)] - a);
+    const int shift = shorten(n, 30);
+    sum_of_face_logs_ -= face_logs_[f];
+    face_logs_[f] = static_cast<std::int16_t>(log2_16(squared(n)) + 32 * shift);
+    sum_of_face_logs_ += face_logs_[f];
+    shorten(n, 15);
+    normals_[f] = {static_cast<std::int16_t>(n.x), static_cast<std::int16_t>(n.y), static_cast<std::int16_t>(n.z)};
+    forget(f);
+  }
+  // Neighbours and seams may be others elsewhere, too.
+  if (join_count_ == mesh_->join_count() && has_seams_ == walk.has_seams) return;
+  join_count_ = mesh_->join_count();
+  has_seams_ = walk.has_seams;
+  looks_.assign(face_count, {});
+}
+
+/// Forgets what was seen of a face and its neighbours.
+void MixedPatchModel::forget(Index face) {
+  looks_[face].is_known = false;
+  for (Index h = 3 * face; h < 3 * face + 3; ++h)
+    if (const Index twin = mesh_->twin(h); twin != kNoIndex) looks_[face_of_corner(twin)].is_known = false;
+}
+
+const MixedPatchModel::Look& MixedPatchModel::look_at(const PatchWalk& walk, Index face) {
+  Look& look = looks_[face];
+  if (look.is_known) return look;
+  look = {};
+  look.is_known = true;
+  std::uint32_t seams = 0;
+  int longest = 0, lengths = 0, areas = 0, neighbours = 0;
+  for (Index k = 0; k < 3; ++k) {
+    const Index h = 3 * face + k, twin = mesh_->twin(h);
+    const int length = walk.edge_logs[h];
+    lengths += length;
+    longest = std::max(longest, length);
+    if (twin == kNoIndex) continue;
+    seams += walk.is_seam(h) ? 1 : 0;
+    areas += face_logs_[face_of_corner(twin)];
+    ++neighbours;
+    const auto [here, beyond] = measure_flatness(h);
+    flats_[h] = static_cast<std::uint8_t>(here);
+    if (here != beyond) look.uneven |= 1U << k;
+  }
+  if (neighbours > 0)
+    look.relative = static_cast<std::uint8_t>(bucket(face_logs_[face] - areas / neighbours, -48, 8, kShapes));
+  look.shape = static_cast<std::uint8_t>(bucket(longest - lengths / 3, 0, 4, kShapes));
+  look.seams = static_cast<std::uint8_t>(std::min(seams, kFaceSeams - 1));
+  return look;
+}
 
 std::uint32_t MixedPatchModel::size_of(Index face) const {
   return bucket(face_logs_[face] - mean_face_log_, -96, 8, kSizes);
 }
 
-/// 7 for flat edges, less by one for each doubling of the angle's tangent, 0 from a right angle on and at borders.
-std::uint32_t MixedPatchModel::measure_flatness(Index half) const {
-  const Vec3i &a = normals_[face_of_corner(half)], &b = normals_[face_of_corner(mesh_->twin(half))];
+/// 7 for flat edges, less by one for each doubling of the angle's tangent, 0 from a right angle on and at borders: as
+/// seen from a half-edge, and from its twin. These are mostly alike, but for rounding.
+std::array<std::uint32_t, 2> MixedPatchModel::measure_flatness(Index half) const {
+  const auto normal = [&](Index h) {
+    const Normal& n = normals_[face_of_corner(h)];
+    return Vec3i{n.x, n.y, n.z};
+  };
+  const Vec3i a = normal(half), b = normal(mesh_->twin(half));
   const std::int64_t cosine = dot(a, b);
-  if (cosine <= 0) return 0;
+  if (cosine <= 0) return {0, 0};
   const Vec3i sine = cross(a, b);
-  const Vec3i quarter = {sine.x >> 2, sine.y >> 2, sine.z >> 2};
-  const int log_tangent = log2_16(squared(quarter) + 1) + 64 - 2 * log2_16(static_cast<std::uint64_t>(cosine));
-  return bucket(-log_tangent, 0, 32, kFlats);
+  const int log_cosine = 2 * log2_16(static_cast<std::uint64_t>(cosine));
+  const auto flatness = [&](const Vec3i& s) {
+    const Vec3i quarter = {s.x >> 2, s.y >> 2, s.z >> 2};
+    const int log_tangent = log2_16(squared(quarter) + 1) + 64 - log_cosine;
+    return bucket(-log_tangent, 0, 32, kFlats);
+  };
+  return {flatness(sine), flatness(sine * -1)};
 }
 
-std::uint32_t MixedPatchModel::flatness(Index half) {
-  const Index other = mesh_->twin(half);
-  if (other == kNoIndex) return 0;
-  if (flat_[half] == 0) flat_[half] = flat_[other] = static_cast<std::uint8_t>(measure_flatness(half) + 1);
-  return flat_[half] - 1U;
+/// The flatness of a face's k-th edge, which is not a border: as seen from the side that asked for it first in the
+/// round.
+std::uint32_t MixedPatchModel::flatness(const Look& look, Index face, Index k) {
+  const Index half = 3 * face + k;
+  if ((look.uneven >> k & 1U) == 0) return flats_[half];
+  if (asked_[half] == 0) asked_[half] = asked_[mesh_->twin(half)] = static_cast<std::uint8_t>(flats_[half] + 1);
+  return asked_[half] - 1U;
 }
 
 bool MixedPatchModel::code_face(BitCoder& coder, const PatchWalk& walk, Index face, bool begins) {
-  std::uint32_t plain = 0, patched = 0, ages = 0, flat = 0, flattest = 0, touched = 0, seams = 0;
-  int degrees = 0, new_degrees = 0, tight = 4, longest = 0, lengths = 0, areas = 0, neighbours = 0;
-  for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+  const Look& look = look_at(walk, face);
+  std::uint32_t plain = 0, patched = 0, ages = 0, flat = 0, flattest = 0, touched = 0;
+  int degrees = 0, new_degrees = 0, tight = 4;
+  for (Index k = 0; k < 3; ++k) {
+    const Index h = 3 * face + k, twin = mesh_->twin(h);
     const Around& vertex = around_[mesh_->from(h)];
-    degrees += static_cast<int>(std::min<Index>(mesh_->degree(mesh_->from(h)), kDegrees));
+    degrees += vertex.degree_before;
     new_degrees += std::min(vertex.degree, 64);
     touched += vertex.patches > 0 ? 1 : 0;
     tight = std::min(tight, vertex.open);
-    const int length = walk.edge_logs[h];
-    lengths += length;
-    longest = std::max(longest, length);
-    plain += walk.state_of(h) == PatchWalk::kPlain ? 1 : 0;
-    patched += walk.state_of(h) == PatchWalk::kPatch ? 1 : 0;
-    if (mesh_->twin(h) == kNoIndex) continue;
-    const Index beyond = face_of_corner(mesh_->twin(h));
-    ages += age(beyond);
-    seams += walk.is_seam(h) ? 1 : 0;
-    areas += face_logs_[beyond];
-    ++neighbours;
-    const std::uint32_t flat_here = flatness(h);
+    if (twin == kNoIndex) {
+      ++plain;
+      continue;
+    }
+    const Index beyond = face_of_corner(twin);
+    const std::uint8_t state = walk.state[beyond];
+    plain += state == PatchWalk::kPlain ? 1 : 0;
+    patched += state == PatchWalk::kPatch ? 1 : 0;
+    ages += ages_[beyond];
+    const std::uint32_t flat_here = flatness(look, face, k);
     flat += flat_here;
-    if (walk.state[beyond] == PatchWalk::kOpen) flattest = std::max(flattest, flat_here);
+    if (state == PatchWalk::kOpen) flattest = std::max(flattest, flat_here);
   }
-  const std::uint32_t state = number_neighbours(plain, patched), size = size_of(face), own_age = age(face);
+  const std::uint32_t state = number_neighbours(plain, patched), size = size_of(face), own_age = ages_[face];
   const std::uint32_t others_age = std::min(ages / 3, kAges - 1);
-  const std::uint32_t relative = neighbours == 0 ? 0 : bucket(face_logs_[face] - areas / neighbours, -48, 8, kShapes);
-  const std::uint32_t shape = bucket(longest - lengths / 3, 0, 4, kShapes);
   const std::uint32_t degree = bucket(degrees, 9, 1, kDegrees);
-  seams = std::min(seams, kFaceSeams - 1);
   const std::uint32_t contexts[] = {
-      ((seams * kStates + state) * kAges + own_age) * 4 + others_age,
+      ((look.seams * kStates + state) * kAges + own_age) * 4 + others_age,
       state * kSizes + size,
-      (relative * kShapes + shape) * 3 + (patched != 0 ? 2
-                                          : plain != 0 ? 1
-                                                       : 0),
-      (seams * kDegrees + degree) * kStates + state,
+      (look.relative * kShapes + look.shape) * 3 + (patched != 0 ? 2
+                                                    : plain != 0 ? 1
+                                                                 : 0),
+      (look.seams * kDegrees + degree) * kStates + state,
       (own_age * kDegrees + degree) * 4 + others_age,
       (std::min(flat / 3, kFlats - 1) * kFlats + flattest) * (kSizes / 3) + size / 3,
       ((touched * 5 + static_cast<std::uint32_t>(tight)) * kRatios + bucket(new_degrees, 10, 1, kRatios)) * kAges +
           own_age};
-  return faces_.code(coder, begins ? 1 : 0, contexts, seams * kStates + state) != 0;
+  return faces_.code(coder, begins ? 1 : 0, contexts, look.seams * kStates + state) != 0;
 }
 
 bool MixedPatchModel::code_edge(BitCoder& coder, const PatchWalk& walk, std::size_t i, bool goes_on) {
@@ -176,8 +231,8 @@ bool MixedPatchModel::code_edge(BitCoder& coder, const PatchWalk& walk, std::siz
       (corners * kRatios + relative) * kPairs + pair,
       relative * kRatios + flip,
       (seam * kCorners + corners) * kSizes + size_of(beyond),
-      ((relative * kAges + age(face)) * kAges + age(beyond)) * 4 + same * 2 + (face == walk.faces.front() ? 1 : 0),
-      (flip * kFlats + flatness(half)) * kCorners + corners,
+      ((relative * kAges + ages_[face]) * kAges + ages_[beyond]) * 4 + same * 2 + (face == walk.faces.front() ? 1 : 0),
+      (flip * kFlats + flatness(look_at(walk, face), face, half % 3)) * kCorners + corners,
       (corners * kRatios + angle) * kRatios + far,
       ((corners * kDegrees + balance) * 3 + at_most_two(c.patches)) * 3 + at_most_two(a.patches + b.patches),
       ((seam * kRatios + angle) * kRatios + relative) * kPairs + pair};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,28 +25,50 @@ class MixedPatchModel final : public PatchModel {
  private:
   /// What is decided around a vertex.
   struct Around {
-    std::int32_t degree = 0;   // as it will be, by what is decided
-    std::int32_t open = 0;     // faces that are not decided
-    std::int32_t patches = 0;  // that it is a corner of
+    std::int32_t degree_before = 0;  // of the level before the round, kDegrees at most
+    std::int32_t degree = 0;         // as it will be, by what is decided
+    std::int32_t open = 0;           // faces that are not decided
+    std::int32_t patches = 0;        // that it is a corner of
+  };
+  /// A face's normal, not longer than 2^15 or so.
+  struct Normal {
+    std::int16_t x = 0, y = 0, z = 0;
+  };
+  /// What contexts say of a face and its neighbours, for as long as none of these is made anew.
+  struct Look {
+    bool is_known = false;
+    std::uint8_t relative = 0;  // its area beside those around
+    std::uint8_t shape = 0;     // how much longer its longest edge is than the mean
+    std::uint8_t seams = 0;     // of its edges
+    std::uint8_t uneven = 0;    // edges whose flatness differs from side to side, bit k for edge k
   };
 
-  std::uint32_t age(Index face) const;
+  void look_at_faces(const PatchWalk& walk);
+  void forget(Index face);
+  const Look& look_at(const PatchWalk& walk, Index face);
   std::uint32_t size_of(Index face) const;
-  std::uint32_t flatness(Index half);
-  std::uint32_t measure_flatness(Index half) const;
+  std::array<std::uint32_t, 2> measure_flatness(Index half) const;
+  std::uint32_t flatness(const Look& look, Index face, Index k);
 
   BitMixer faces_;
   BitMixer edges_;
 
+  // Remembered from round to round.
+  std::vector<Normal> normals_;          // by face
+  std::vector<std::int16_t> face_logs_;  // by face: of the area, squared
+  std::int64_t sum_of_face_logs_ = 0;
+  std::vector<std::uint8_t> flats_;  // by half-edge, where its face's look is known: see measure_flatness
+  std::vector<Look> looks_;          // by face
+  std::uint32_t join_count_ = 0;     // of the mesh, in the round before
+  bool has_seams_ = false;           // the same
+
   // Of the round at hand.
   const PatchMesh* mesh_ = nullptr;
   std::span<const Vec3i> positions_;
-  std::uint32_t round_ = 0;
-  std::vector<Vec3i> normals_;           // by face: not longer than 2^15 or so
-  std::vector<std::int16_t> face_logs_;  // by face: of the area, squared
   int mean_face_log_ = 0;
-  std::vector<std::uint8_t> flat_;  // by half-edge: see flatness, plus 1; 0 where it was not asked for
-  std::vector<Around> around_;      // by vertex
+  std::vector<std::uint8_t> asked_;  // by half-edge of uneven flatness: that, plus 1, once it was asked for
+  std::vector<std::uint8_t> ages_;   // by face: 0 for those that the last round made; the oldest are alike
+  std::vector<Around> around_;       // by vertex
 
   // Of the patch at hand.
   Vec3i centre_;                  // sixteenths

@@ -31,13 +31,31 @@ void PatchCoder::start(const PatchMesh& mesh, std::span<const Vec3i> positions, 
   walk_.state.assign(face_count, PatchWalk::kOpen);
   decided_.assign(3 * face_count, 0);
   walk_.edge_logs.resize(3 * face_count);
-  for (Index h = 0; h < walk_.edge_logs.size(); ++h) {
-    const Index other = mesh.twin(h);
-    walk_.edge_logs[h] =
-        other < h ? walk_.edge_logs[other]
-                  : static_cast<std::int16_t>(log2_16(squared(positions[mesh.from(h)] - positions[mesh.to(h)])));
-  }
+  find_changed();
+  for (const Index face : walk_.changed)
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      const Index other = mesh.twin(h);
+      walk_.edge_logs[h] =
+          other < h ? walk_.edge_logs[other]
+                    : static_cast<std::int16_t>(log2_16(squared(positions[mesh.from(h)] - positions[mesh.to(h)])));
+    }
   model_->start(walk_);
+}
+
+/// Finds the faces that were made in the round before, or have a vertex that has moved, in ascending order.
+void PatchCoder::find_changed() {
+  std::vector<std::uint8_t> is_moved;
+  if (!moved_.empty()) is_moved.assign(mesh().vertex_count(), 0);
+  for (const Index vertex : moved_) is_moved[vertex] = 1;
+  moved_.clear();
+  const auto has_moved = [&](Index face) {
+    return is_moved[mesh().from(3 * face)] != 0 || is_moved[mesh().from(3 * face + 1)] != 0 ||
+           is_moved[mesh().from(3 * face + 2)] != 0;
+  };
+  walk_.changed.clear();
+  for (Index face = 0; face < mesh().face_count(); ++face)
+    if (mesh().made_in(face) + 1 == walk_.round || (!is_moved.empty() && has_moved(face)))
+      walk_.changed.push_back(face);
 }
 
 bool PatchCoder::code_border(BitCoder& coder, std::uint32_t what, bool yes) {

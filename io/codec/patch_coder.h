@@ -46,14 +46,18 @@ class PatchCoder {
  public:
   explicit PatchCoder(bool is_fast);
 
+  /// Notes that a vertex lies elsewhere than in the round before.
+  void note_move(Index vertex) { moved_.push_back(vertex); }
+
   /// Codes a round's patches; a reader passes no plan. Without seams none are looked for. False where what is read is
-  /// no round.
+  /// no round. Rounds are numbered from 1 on; what faces look like is remembered from one to the next.
   bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, std::span<const Vec3i> positions,
             std::uint32_t round, const PatchPlan* plan, RoundPatches& patches);
 
  private:
   const PatchMesh& mesh() const { return *walk_.mesh; }
   void start(const PatchMesh& mesh, std::span<const Vec3i> positions, std::uint32_t round, bool has_seams);
+  void find_changed();
   void walk(BitCoder& coder, const PatchPlan* plan, Index count, RoundPatches& patches);
   void grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundPatches& patches);
   void go_on(std::size_t i);
@@ -67,6 +71,7 @@ class PatchCoder {
   std::unique_ptr<PatchModel> model_;
   BitMixer borders_;
   NumberCoder counts_;
+  std::vector<Index> moved_;  // vertices, since the last round
 
   // Of the round at hand.
   PatchWalk walk_;

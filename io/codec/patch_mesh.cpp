@@ -37,6 +37,7 @@ void PatchMesh::start(std::vector<Index> corners, std::vector<Index> wedges, std
 }
 
 void PatchMesh::join(std::span<const Index> halves) {
+  ++join_count_;
   std::vector<HalfEdge> edges;
   edges.reserve(halves.size());
   for (const Index h : halves) edges.emplace_back(from(h), to(h), h);

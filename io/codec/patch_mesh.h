@@ -60,6 +60,8 @@ class PatchMesh {
   Index part(Index half);
   /// Finds twins among border half-edges, as `start` does.
   void join(std::span<const Index> halves);
+  /// How often that was done: faces that were not made anew may have got other neighbours by it.
+  std::uint32_t join_count() const { return join_count_; }
 
  private:
   struct Outer {
@@ -76,6 +78,7 @@ class PatchMesh {
   std::vector<Index> twins_;
   std::vector<Index> degree_;
   std::vector<std::uint32_t> made_in_;
+  std::uint32_t join_count_ = 0;
   std::vector<Outer> outer_;
 };
 

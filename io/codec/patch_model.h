@@ -22,6 +22,7 @@ struct PatchWalk {
   std::span<const Vec3i> positions;
   std::uint32_t round = 0;
   bool has_seams = false;
+  std::vector<Index> changed;           // faces that were made, or had a corner moved, since the round before
   std::vector<std::uint8_t> state;      // by face
   std::vector<std::int16_t> edge_logs;  // by half-edge: of the length, squared
 
