@@ -37,6 +37,7 @@ using detail::Edge;
 using detail::for_each_edge;
 using detail::Goal;
 using detail::HalfEdge;
+using detail::KnownDistance;
 using detail::kSamplesOfStep;
 using detail::PatchBound;
 using detail::sorted_edges;
@@ -189,8 +190,10 @@ SurfaceBounds bounds_by_correspondence(const Mesh& from, const Mesh& to) {
 /// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
 class Tally {
  public:
-  Tally(const Surface& from, const Surface& to, CoincidentFaces* to_faces = nullptr)
-      : from_(from), to_(to), to_faces_(to_faces) {}
+  /// `known`: by vertex of `from`, a face of `to` near it, where one is known.
+  Tally(const Surface& from, const Surface& to, std::span<const KnownDistance> known,
+        CoincidentFaces* to_faces = nullptr)
+      : from_(from), to_(to), known_(known), to_faces_(to_faces) {}
 
   void operator()(const Vec3& point, Index face) {
     points_.push_back(point);
@@ -209,7 +212,10 @@ class Tally {
       for (std::size_t i = first; i < std::min(first + kSamplesOfStep, order.size()); ++i)
         points.push_back(points_[order[i]]);
       hits.assign(points.size(), {0, {}, kNoIndex, 0});
-      for (std::size_t i = 0; correspond && i < hits.size(); ++i) hits[i].face = on_faces_[order[first + i]];
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        const Index face = on_faces_[order[first + i]];
+        hits[i].face = correspond ? face : near(points[i], face);
+      }
       to_.index.nearest(points, hits);
       for (std::size_t i = 0; i < hits.size(); ++i) {
         if (!steps.next()) return;
@@ -228,6 +234,17 @@ class Tally {
     sum_ += hit.distance;
     squares_ += hit.distance * hit.distance;
     if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_.mesh, face), to_faces_->as_near_as(hit));
+  }
+  /// What is near the corner of a face that a point of it is nearest to.
+  Index near(const Vec3& point, Index face) const {
+    Index best = kNoIndex;
+    double least = detail::kUnbounded;
+    for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
+      const Index there = known_[from_.mesh.corner_vertex(corner)].face;
+      const double squared = squared_length(point - from_.mesh.corner_position(corner));
+      if (there != kNoIndex && squared < least) best = there, least = squared;
+    }
+    return best;
   }
   /// The samples by their faces, such that those of neighbours are near each other, and those of a face along a curve.
   std::vector<Index> along_surface() const {
@@ -250,6 +267,7 @@ class Tally {
 
   const Surface& from_;
   const Surface& to_;
+  std::span<const KnownDistance> known_;
   CoincidentFaces* to_faces_;
   std::vector<Vec3> points_;
   std::vector<Index> on_faces_;  // That they are on.
@@ -257,9 +275,9 @@ class Tally {
 };
 
 /// Fills in mean and rms, and returns the mean angle between the normals at the faces' samples and at their nearest
-/// points.
-double measure_means(const Surface& from, const Surface& to, std::size_t sample_count, const Progress& progress,
-                     OneSidedDeviation& result) {
+/// points. `known` as in Tally.
+double measure_means(const Surface& from, const Surface& to, std::span<const KnownDistance> known,
+                     std::size_t sample_count, const Progress& progress, OneSidedDeviation& result) {
   const std::size_t face_count = std::max(from.mesh.face_count(), to.mesh.face_count());
   const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
   const Samples samples(from, metros_count);
@@ -268,7 +286,7 @@ double measure_means(const Surface& from, const Surface& to, std::size_t sample_
     return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
   };
   CoincidentFaces to_faces(to.mesh, to.index);
-  Tally vertices(from, to), edges(from, to), faces(from, to, &to_faces);
+  Tally vertices(from, to, known), edges(from, to, known), faces(from, to, known, &to_faces);
   samples.for_vertices(std::min(samples.vertex_count(), taken(weights.vertices)), std::ref(vertices));
   samples.for_edges(taken(weights.edges), std::ref(edges));
   // The angle needs a fair number in faces, even where few or none of Metro's are.
@@ -316,8 +334,8 @@ void take_maximum(const SupremumSearch& search, OneSidedDeviation& result) {
 }
 
 /// Narrows the maximum of each direction by itself, or of both together; leaves mean and rms as they are.
-void narrow_maxima(const Surface& a, const Surface& b, const DeviationOptions& options, Deviation& result) {
-  DirectedSearch forward(a, b), backward(b, a);
+void narrow_maxima(const Surface& a, const Surface& b, const DeviationOptions& options, DirectedSearch& forward,
+                   DirectedSearch& backward, Deviation& result) {
   const Goal goal = detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), 0);
   Goal forward_goal = goal, backward_goal = goal;
   forward.search.scout(kScouted, forward_goal);
@@ -368,12 +386,15 @@ Deviation measure_deviation(const MeasuredSurface& first, const MeasuredSurface&
   const Surface &a = first.impl(), &b = second.impl();
   if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return deviation_of_empty(a.mesh, b.mesh);
   Deviation result;
+  // The maxima come first: what they find near the vertices is where the samples around them are looked for.
+  DirectedSearch forward(a, b), backward(b, a);
+  narrow_maxima(a, b, options, forward, backward, result);
+  if (!options.progress.add(0)) return unmeasured();
   const auto means = [&] { return options.progress.part(kMeansShare); };
-  result.mean_normal_angle = measure_means(a, b, options.sample_count, means(), result.forward);
+  result.mean_normal_angle =
+      measure_means(a, b, forward.bounds.vertices, options.sample_count, means(), result.forward);
   if (!options.progress.add(0)) return unmeasured();
-  measure_means(b, a, options.sample_count, means(), result.backward);
-  if (!options.progress.add(0)) return unmeasured();
-  narrow_maxima(a, b, options, result);
+  measure_means(b, a, backward.bounds.vertices, options.sample_count, means(), result.backward);
   options.progress.reach(1);
   return result;
 }

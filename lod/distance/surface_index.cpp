@@ -41,6 +41,7 @@ constexpr double kSingleSlack = 1e-5;    // The same where they are computed in 
 constexpr double kFarthest = 1e15;       // Points farther away are pulled in, for that: squares of floats are finite.
 constexpr double kTogether = 8;          // How far apart points searched for at once may lie, in sizes of a face.
 constexpr std::size_t kStackSize = 64;   // Three entries stay behind on each level.
+constexpr std::size_t kMostTurned = 256;  // Faces of a child whose box is tried along other axes than the mesh's.
 
 /// A box by its centre and half size along each axis; the default contains nothing.
 struct CentredBox {
