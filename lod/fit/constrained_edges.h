@@ -14,6 +14,7 @@ struct MeshEdge {
   std::array<Index, 2> corners{kNoIndex, kNoIndex};
   std::vector<std::array<Index, 2>> layers;  ///< the corners in further sheets
   bool constrained = false;                  ///< border, seam, material border, or faces on more sides than two
+  bool stays = false;                        ///< see turn_edges
 };
 
 /// Lists the edges of any mesh, sorted by their vertices. Unlike `Connectivity` it takes meshes that are not manifold.

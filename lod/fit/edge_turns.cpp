@@ -18,10 +18,11 @@ namespace lodestone::detail {
 namespace {
 
 constexpr double kGain = 0.98;  // turned where the samples' sum falls below this share
+constexpr double kStays = 3;    // not tried again where it would be larger than this share
 
 class EdgeTurner {
  public:
-  EdgeTurner(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
+  EdgeTurner(Mesh& mesh, std::span<MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
              const OriginalGuard& guard, std::span<const std::uint8_t> fixed)
       : mesh_(mesh),
         edges_(edges),
@@ -39,7 +40,10 @@ class EdgeTurner {
   std::size_t run() {
     std::size_t count = 0;
     for (Index f = 0; f < mesh_.face_count(); ++f) taken_.push_back(is_fixed(f) ? 1 : 0);
-    for (const MeshEdge& edge : edges_) count += !edge.constrained && turn(edge) ? 1 : 0;
+    for (MeshEdge& edge : edges_) count += !edge.constrained && !edge.stays && turn(edge) ? 1 : 0;
+    for (MeshEdge& edge : edges_)
+      edge.stays = edge.stays && std::none_of(edge.corners.begin(), edge.corners.end(),
+                                              [&](Index corner) { return taken_[face_of_corner(corner)] != 0; });
     return count;
   }
 
@@ -60,7 +64,7 @@ class EdgeTurner {
   }
 
   /// Turns the edge in all sheets that lie on one another, or in none.
-  bool turn(const MeshEdge& edge) {
+  bool turn(MeshEdge& edge) {
     quads_.assign(1, quad_at(edge.corners));
     for (const auto& corners : edge.layers) quads_.push_back(quad_at(corners));
     const Quad& quad = quads_.front();
@@ -68,7 +72,7 @@ class EdgeTurner {
     if (std::any_of(quads_.begin(), quads_.end(), is_taken)) return false;
     const auto turns = [&](const Quad& q) { return turns_texture(q); };
     if (!keeps_shape(quad) || std::any_of(quads_.begin(), quads_.end(), turns)) return false;
-    if (!is_nearer() || has_edge(quad.c, quad.d) || !is_let_pass(quad)) return false;
+    if (!is_nearer(edge.stays) || has_edge(quad.c, quad.d) || !is_let_pass(quad)) return false;
     for (const Quad& q : quads_) {
       for (std::size_t i = 0; i < 2; ++i) taken_[q.face[i]] = 1;
       set_face(q.face[0], {q.a, q.d, q.c});
@@ -124,8 +128,8 @@ class EdgeTurner {
     return false;
   }
 
-  /// Whether the samples on the edge's faces would be nearer to the new ones.
-  bool is_nearer() {
+  /// Whether the samples on the edge's faces would be nearer to the new ones; `stays`: they would be far from it.
+  bool is_nearer(bool& stays) {
     const Quad& q = quads_.front();
     gather_samples(position(q.a));
     const Vec3 origin = position(q.a), a = Vec3(), b = position(q.b) - origin, c = position(q.c) - origin,
@@ -133,11 +137,12 @@ class EdgeTurner {
     for (std::vector<float>& squared : squared_distances_) squared.resize(points_.padded_size());
     squared_distances(points_, {a, d, c}, squared_distances_[0].data());
     squared_distances(points_, {d, b, c}, squared_distances_[1].data());
-    const double enough = kGain * error_before();
+    const double before = error_before();
     double after = 0;
-    for (std::size_t i = 0; i < points_.size() && after < enough; ++i)
+    for (std::size_t i = 0; i < points_.size() && after <= kStays * before; ++i)
       after += weights_[i] * norm_.error(double{std::min(squared_distances_[0][i], squared_distances_[1][i])});
-    return after < enough;
+    stays = after > kStays * before;
+    return after < kGain * before;
   }
 
   void gather_samples(const Vec3& origin) {
@@ -164,7 +169,7 @@ class EdgeTurner {
   }
 
   Mesh& mesh_;
-  std::span<const MeshEdge> edges_;
+  std::span<MeshEdge> edges_;
   SampleNorm norm_;
   const OriginalGuard& guard_;
   std::span<SurfaceSample> samples_;
@@ -183,7 +188,7 @@ class EdgeTurner {
 
 }  // namespace
 
-std::size_t turn_edges(Mesh& mesh, std::span<const MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
+std::size_t turn_edges(Mesh& mesh, std::span<MeshEdge> edges, std::span<SurfaceSample> samples, SampleNorm norm,
                        const OriginalGuard& guard, std::span<const std::uint8_t> fixed) {
   return EdgeTurner(mesh, edges, samples, norm, guard, fixed).run();
 }

@@ -18,12 +18,14 @@
 #include <utility>
 #include <vector>
 
+#include <lodestone/core/detail/grouping.h>
 #include <lodestone/core/detail/position_index.h>
 #include <lodestone/lod/surface_index.h>
 
 #include "distance/face_boxes.h"
 #include "distance/face_names.h"
 #include "distance/face_order.h"
+#include "distance/point_triangle.h"
 #include "distance/surface_walk.h"
 #include "distance/triangle.h"
 #include "fit/attribute_lookup.h"
@@ -194,6 +196,8 @@ class Fitting {
   double mean_square() const;  ///< of the samples' distances
 
  private:
+  using LineEnds = std::array<Index, 2>;  // vertices of the level
+
   /// Hears whether the fit is still wanted.
   bool goes_on() const { return progress_.add(0); }
   void classify();
@@ -209,9 +213,12 @@ class Fitting {
   double mean_distance() const;
   template <class Value>
   double mean(const Value& value) const;
-  void turn_edges();
+  void turn_edges(bool is_first);
+  void list_edges_anew();
   void assemble(SparseSystem& system);
   void add_faces(SparseSystem& system) const;
+  void search_lines(std::span<const LineEnds> lines);
+  void follow_lines(std::span<const LineEnds> lines);
   void add_lines(SparseSystem& system);
   void move(double relaxation);
   double forward_error();
@@ -237,6 +244,7 @@ class Fitting {
   SurfaceSamples samples_;
   Effort effort_;
   std::vector<Index> near_line_;         // by sample of a line: the level's line that it was last nearest to
+  bool are_lines_found_ = false;         // else they are to be searched for
   std::vector<std::uint8_t> line_ends_;  // by vertex: constrained edges, at most 255
 };
 
@@ -299,6 +307,7 @@ void Fitting::search(double squared_distance) {
       together[i]->place_at(face, weights_at(point, triangle_of(level_, face), distance * distance));
     }
   }
+  are_lines_found_ = false;
 }
 
 void Fitting::update_walk() {
@@ -376,11 +385,25 @@ double Fitting::mean(const Value& value) const {
   return area > 0 ? sum / area : 0;
 }
 
-void Fitting::turn_edges() {
-  if (detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_, fixed_) == 0) return;
+/// Before vertices have moved, what an edge would do says little of what it will.
+void Fitting::turn_edges(bool is_first) {
+  const bool any = detail::turn_edges(level_, edges_, samples_.all(), norm_, guard_, fixed_) != 0;
+  if (is_first)
+    for (MeshEdge& edge : edges_) edge.stays = false;
+  if (!any) return;
   walk_.reset();
   system_.reset();
-  if (goes_on()) edges_ = list_edges(level_);
+  if (goes_on()) list_edges_anew();
+}
+
+/// Lists edges after some were turned; those that were there before keep what is known of them.
+void Fitting::list_edges_anew() {
+  const std::vector<MeshEdge> before = std::exchange(edges_, list_edges(level_));
+  auto old = before.begin();
+  for (MeshEdge& edge : edges_) {
+    while (old != before.end() && old->vertices < edge.vertices) ++old;
+    edge.stays = old != before.end() && old->vertices == edge.vertices && old->stays;
+  }
 }
 
 void Fitting::assemble(SparseSystem& system) {
@@ -422,37 +445,66 @@ void Fitting::add_faces(SparseSystem& system) const {
   }
 }
 
-/// Draws the level's lines to the original's. A sample of length l stands for an area of l times the edge it lies on.
-void Fitting::add_lines(SparseSystem& system) {
-  Mesh segments;
+/// Searches for the level's line nearest to each sample of a line, wherever that is.
+void Fitting::search_lines(std::span<const LineEnds> lines) {
+  Mesh segments;  // as triangles without area
   segments.positions = level_.positions;
-  std::vector<const MeshEdge*> of_face;
-  for (const MeshEdge& edge : edges_) {
-    if (!edge.constrained) continue;
-    of_face.push_back(&edge);
-    for (const Index v : {edge.vertices[0], edge.vertices[1], edge.vertices[1]}) segments.corner_wedge.push_back(v);
-  }
-  if (of_face.empty()) return;
+  for (const LineEnds& ends : lines)
+    for (const Index v : {ends[0], ends[1], ends[1]}) segments.corner_wedge.push_back(v);
   segments.wedge_vertex.resize(segments.positions.size());
-  for (Index v = 0; v < segments.wedge_vertex.size(); ++v) segments.wedge_vertex[v] = v;
+  std::iota(segments.wedge_vertex.begin(), segments.wedge_vertex.end(), Index{0});
   const SurfaceIndex index(segments);
   const std::vector<LineSample>& samples = original_.lines->all();
   for (std::size_t i = 0; i < samples.size() && steps_.next(); ++i) {
+    const Index hint = near_line_[i] < lines.size() ? near_line_[i] : kNoIndex;
+    near_line_[i] = index.nearest(samples[i].position, kUnlimited, hint).face;
+  }
+  are_lines_found_ = true;
+}
+
+/// Goes on from where each sample of a line was, from line to line, for as long as the next one is nearer.
+void Fitting::follow_lines(std::span<const LineEnds> lines) {
+  const Grouping lines_at(level_.vertex_count(), 2 * lines.size(), [&](Index end) { return lines[end / 2][end % 2]; });
+  const auto squared_distance = [&](const Vec3& p, Index line) {
+    const auto [a, b] = lines[line];
+    return squared_distance_to_segment(p, Vec3(level_.positions[a]), Vec3(level_.positions[b]));
+  };
+  const std::vector<LineSample>& samples = original_.lines->all();
+  for (std::size_t i = 0; i < samples.size() && steps_.next(); ++i) {
+    Index& line = near_line_[i];
+    double least = squared_distance(samples[i].position, line);
+    for (Index before = kNoIndex; line != before;) {
+      before = line;
+      for (const Index v : lines[before])
+        for (const Index end : lines_at[v])
+          if (const double there = squared_distance(samples[i].position, end / 2); there < least)
+            least = there, line = end / 2;
+    }
+  }
+}
+
+/// Draws the level's lines to the original's. A sample of length l stands for an area of l times the edge it lies on.
+void Fitting::add_lines(SparseSystem& system) {
+  std::vector<LineEnds> lines;
+  for (const MeshEdge& edge : edges_)
+    if (edge.constrained) lines.push_back(edge.vertices);
+  if (lines.empty()) return;
+  are_lines_found_ ? follow_lines(lines) : search_lines(lines);
+  if (!goes_on()) return;
+  const std::vector<LineSample>& samples = original_.lines->all();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     const LineSample& sample = samples[i];
-    const Index hint = near_line_[i] < of_face.size() ? near_line_[i] : kNoIndex;
-    const SurfaceIndex::Hit hit = index.nearest(sample.position, kUnlimited, hint);
-    near_line_[i] = hit.face;
-    const MeshEdge& edge = *of_face[hit.face];
-    const Vec3 a(level_.positions[edge.vertices[0]]);
-    const Vec3 b(level_.positions[edge.vertices[1]]);
+    const LineEnds& ends = lines[near_line_[i]];
+    const Vec3 a(level_.positions[ends[0]]), b(level_.positions[ends[1]]);
     const double length_of_edge = length(b - a);
     if (!(length_of_edge > 0)) continue;
-    const double t = std::clamp(dot(hit.point - a, b - a) / (length_of_edge * length_of_edge), 0.0, 1.0);
+    const double t = std::clamp(dot(sample.position - a, b - a) / (length_of_edge * length_of_edge), 0.0, 1.0);
+    const double squared = squared_length(sample.position - (a + (b - a) * t));
     const double weights[2] = {1 - t, t};
-    const double weight = kLineWeight * sample.length * length_of_edge * norm_.weight(hit.distance * hit.distance);
+    const double weight = kLineWeight * sample.length * length_of_edge * norm_.weight(squared);
     const Symmetric3 metric =
         Symmetric3::identity(weight) + Symmetric3::outer((b - a) * (1 / length_of_edge), -(1 - kAlong) * weight);
-    system.add(edge.vertices.data(), weights, 2, sample.position, metric);
+    system.add(ends.data(), weights, 2, sample.position, metric);
   }
 }
 
@@ -535,7 +587,7 @@ void Fitting::run() {
   const Progress moves = progress_.part(1 - kFirstShare);
   bool is_smooth = true;  // each move has made things better
   for (int i = 0; i < effort_.moves && !progress_.is_cancelled(); ++i) {
-    if (i < effort_.turning && freedom_ == Freedom::All) turn_edges();
+    if (i < effort_.turning && freedom_ == Freedom::All) turn_edges(i == 0);
     const bool goes_beyond = i > 0 && is_smooth;
     move(goes_beyond ? kOverRelaxation : 1);
     const bool looks_everywhere = effort_.search_every > 0 && (i + 1) % effort_.search_every == 0;
