@@ -112,7 +112,7 @@ const MixedPatchModel::Look& MixedPatchModel::look_at(const PatchWalk& walk, Ind
     ++neighbours;
     const auto [here, beyond] = measure_flatness(h);
     flats_[h] = static_cast<std::uint8_t>(here);
-    if (here != beyond) look.uneven |= 1U << k;
+    if (here != beyond) look.uneven = static_cast<std::uint8_t>(look.uneven | 1U << k);
   }
   if (neighbours > 0)
     look.relative = static_cast<std::uint8_t>(bucket(face_logs_[face] - areas / neighbours, -48, 8, kShapes));

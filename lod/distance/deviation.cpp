@@ -12,6 +12,7 @@
 #include <lodestone/lod/deviation.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -37,7 +38,6 @@ using detail::Edge;
 using detail::for_each_edge;
 using detail::Goal;
 using detail::HalfEdge;
-using detail::KnownDistance;
 using detail::kSamplesOfStep;
 using detail::PatchBound;
 using detail::sorted_edges;
@@ -64,12 +64,17 @@ struct MeasuredSurface::Impl {
   };
 
   explicit Impl(const Mesh& given)
-      : mesh(given), index(given), opposite(detail::opposite_corners(given)), edges(list_edges(given)) {}
+      : mesh(given),
+        index(given),
+        box(bounding_box(given)),
+        opposite(detail::opposite_corners(given)),
+        edges(list_edges(given)) {}
 
   static std::vector<EdgeFaces> list_edges(const Mesh& mesh);
 
   const Mesh& mesh;
   SurfaceIndex index;
+  Box box;
   std::vector<Index> opposite;
   std::vector<EdgeFaces> edges;  // In the order of the faces.
 };
@@ -190,10 +195,9 @@ SurfaceBounds bounds_by_correspondence(const Mesh& from, const Mesh& to) {
 /// The distances at samples of one kind and, where `to_faces` is given, the normal angles.
 class Tally {
  public:
-  /// `known`: by vertex of `from`, a face of `to` near it, where one is known.
-  Tally(const Surface& from, const Surface& to, std::span<const KnownDistance> known,
-        CoincidentFaces* to_faces = nullptr)
-      : from_(from), to_(to), known_(known), to_faces_(to_faces) {}
+  /// `near`: by vertex of `from`, a face of `to` near it, where one is known.
+  Tally(const Surface& from, const Surface& to, std::span<const Index> near, CoincidentFaces* to_faces = nullptr)
+      : from_(from), to_(to), near_(near), to_faces_(to_faces) {}
 
   void operator()(const Vec3& point, Index face) {
     points_.push_back(point);
@@ -214,7 +218,7 @@ class Tally {
       hits.assign(points.size(), {0, {}, kNoIndex, 0});
       for (std::size_t i = 0; i < hits.size(); ++i) {
         const Index face = on_faces_[order[first + i]];
-        hits[i].face = correspond ? face : near(points[i], face);
+        hits[i].face = correspond ? face : hint_at(points[i], face);
       }
       to_.index.nearest(points, hits);
       for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -236,11 +240,11 @@ class Tally {
     if (to_faces_ != nullptr) angles_ += least_angle(area_vector(from_.mesh, face), to_faces_->as_near_as(hit));
   }
   /// What is near the corner of a face that a point of it is nearest to.
-  Index near(const Vec3& point, Index face) const {
+  Index hint_at(const Vec3& point, Index face) const {
     Index best = kNoIndex;
     double least = detail::kUnbounded;
     for (Index corner = 3 * face; corner < 3 * face + 3; ++corner) {
-      const Index there = known_[from_.mesh.corner_vertex(corner)].face;
+      const Index there = near_[from_.mesh.corner_vertex(corner)];
       const double squared = squared_length(point - from_.mesh.corner_position(corner));
       if (there != kNoIndex && squared < least) best = there, least = squared;
     }
@@ -249,7 +253,7 @@ class Tally {
   /// The samples by their faces, such that those of neighbours are near each other, and those of a face along a curve.
   std::vector<Index> along_surface() const {
     const std::span<const Index> ranks = from_.index.ranks();
-    const detail::MortonCurve curve(bounding_box(from_.mesh));
+    const detail::MortonCurve curve(from_.box);
     std::vector<std::pair<std::uint64_t, Index>> keys(count());
     for (Index i = 0; i < keys.size(); ++i)
       keys[i] = {std::uint64_t{ranks[on_faces_[i]]} << 32 | curve.code(points_[i]) >> 31, i};
@@ -267,7 +271,7 @@ class Tally {
 
   const Surface& from_;
   const Surface& to_;
-  std::span<const KnownDistance> known_;
+  std::span<const Index> near_;
   CoincidentFaces* to_faces_;
   std::vector<Vec3> points_;
   std::vector<Index> on_faces_;  // That they are on.
@@ -275,9 +279,9 @@ class Tally {
 };
 
 /// Fills in mean and rms, and returns the mean angle between the normals at the faces' samples and at their nearest
-/// points. `known` as in Tally.
-double measure_means(const Surface& from, const Surface& to, std::span<const KnownDistance> known,
-                     std::size_t sample_count, const Progress& progress, OneSidedDeviation& result) {
+/// points. `near` as in Tally.
+double measure_means(const Surface& from, const Surface& to, std::span<const Index> near, std::size_t sample_count,
+                     const Progress& progress, OneSidedDeviation& result) {
   const std::size_t face_count = std::max(from.mesh.face_count(), to.mesh.face_count());
   const double metros_count = std::max(kMetrosSamplesPerFace * static_cast<double>(face_count), kLeastSamples);
   const Samples samples(from, metros_count);
@@ -286,7 +290,7 @@ double measure_means(const Surface& from, const Surface& to, std::span<const Kno
     return static_cast<std::size_t>(std::ceil(static_cast<double>(sample_count) * weight / metros_count));
   };
   CoincidentFaces to_faces(to.mesh, to.index);
-  Tally vertices(from, to, known), edges(from, to, known), faces(from, to, known, &to_faces);
+  Tally vertices(from, to, near), edges(from, to, near), faces(from, to, near, &to_faces);
   samples.for_vertices(std::min(samples.vertex_count(), taken(weights.vertices)), std::ref(vertices));
   samples.for_edges(taken(weights.edges), std::ref(edges));
   // The angle needs a fair number in faces, even where few or none of Metro's are.
@@ -308,9 +312,7 @@ double measure_means(const Surface& from, const Surface& to, std::span<const Kno
 // Vertices that are looked at before all others: a maximum near the true one from the start saves most bounds.
 constexpr std::size_t kScouted = 1000;
 
-double larger_diagonal(const Mesh& a, const Mesh& b) {
-  return std::max(bounding_box(a).diagonal(), bounding_box(b).diagonal());
-}
+double larger_diagonal(const Surface& a, const Surface& b) { return std::max(a.box.diagonal(), b.box.diagonal()); }
 
 /// One direction's search for its maximum, with what it needs.
 struct DirectedSearch {
@@ -320,6 +322,14 @@ struct DirectedSearch {
         to_surface(to.mesh, to.opposite, to.index),
         to_patch(to.mesh, to.opposite),
         search(from.mesh, to_surface, to_patch, bounds) {}
+
+  /// By vertex: a face near it, where one is known.
+  std::vector<Index> near_vertices() const {
+    std::vector<Index> near;
+    near.reserve(bounds.vertices.size());
+    for (const detail::KnownDistance& known : bounds.vertices) near.push_back(known.face);
+    return near;
+  }
 
   SurfaceBounds bounds;
   TargetSurface to_surface;
@@ -334,9 +344,11 @@ void take_maximum(const SupremumSearch& search, OneSidedDeviation& result) {
 }
 
 /// Narrows the maximum of each direction by itself, or of both together; leaves mean and rms as they are.
-void narrow_maxima(const Surface& a, const Surface& b, const DeviationOptions& options, DirectedSearch& forward,
-                   DirectedSearch& backward, Deviation& result) {
-  const Goal goal = detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), 0);
+/// Returns what was found near the vertices of each on the other.
+std::array<std::vector<Index>, 2> narrow_maxima(const Surface& a, const Surface& b, const DeviationOptions& options,
+                                                Deviation& result) {
+  DirectedSearch forward(a, b), backward(b, a);
+  const Goal goal = detail::goal_of(options, larger_diagonal(a, b), 0);
   Goal forward_goal = goal, backward_goal = goal;
   forward.search.scout(kScouted, forward_goal);
   backward.search.scout(kScouted, backward_goal);
@@ -349,6 +361,7 @@ void narrow_maxima(const Surface& a, const Surface& b, const DeviationOptions& o
   }
   take_maximum(forward.search, result.forward);
   take_maximum(backward.search, result.backward);
+  return {forward.near_vertices(), backward.near_vertices()};
 }
 
 /// The deviation where a mesh has no faces: the means are as the maximum.
@@ -387,14 +400,12 @@ Deviation measure_deviation(const MeasuredSurface& first, const MeasuredSurface&
   if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return deviation_of_empty(a.mesh, b.mesh);
   Deviation result;
   // The maxima come first: what they find near the vertices is where the samples around them are looked for.
-  DirectedSearch forward(a, b), backward(b, a);
-  narrow_maxima(a, b, options, forward, backward, result);
+  const auto [near_a, near_b] = narrow_maxima(a, b, options, result);
   if (!options.progress.add(0)) return unmeasured();
   const auto means = [&] { return options.progress.part(kMeansShare); };
-  result.mean_normal_angle =
-      measure_means(a, b, forward.bounds.vertices, options.sample_count, means(), result.forward);
+  result.mean_normal_angle = measure_means(a, b, near_a, options.sample_count, means(), result.forward);
   if (!options.progress.add(0)) return unmeasured();
-  measure_means(b, a, backward.bounds.vertices, options.sample_count, means(), result.backward);
+  measure_means(b, a, near_b, options.sample_count, means(), result.backward);
   options.progress.reach(1);
   return result;
 }
@@ -412,8 +423,8 @@ Deviation measure_maximum(const MeasuredSurface& first, const MeasuredSurface& s
   const Surface &a = first.impl(), &b = second.impl();
   if (a.mesh.face_count() == 0 || b.mesh.face_count() == 0) return detail::maximum_of_empty(a.mesh, b.mesh);
   DirectedSearch forward(a, b), backward(b, a);
-  return detail::narrow_both(forward.search, backward.search,
-                             detail::goal_of(options, larger_diagonal(a.mesh, b.mesh), enough), options.budget);
+  return detail::narrow_both(forward.search, backward.search, detail::goal_of(options, larger_diagonal(a, b), enough),
+                             options.budget);
 }
 
 }  // namespace lodestone

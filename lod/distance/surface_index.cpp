@@ -522,11 +522,13 @@ Node SurfaceIndex::Impl::make_node(std::size_t begin, std::size_t child_size, st
     extents[i].add(node.frame.local(point(children[i].box.low) * scale));
     extents[i].add(node.frame.local(point(children[i].box.high) * scale));
   }
-  const Frame turned = make_frame(origin, all.spread.principal_axes());
-  const ChildExtents turned_extents = child_extents(turned, begin, child_size);
-  if (half_area(turned_extents) < half_area(extents)) {
-    node.frame = turned;
-    extents = turned_extents;
+  if (child_size <= kMostTurned) {
+    const Frame turned = make_frame(origin, all.spread.principal_axes());
+    const ChildExtents turned_extents = child_extents(turned, begin, child_size);
+    if (half_area(turned_extents) < half_area(extents)) {
+      node.frame = turned;
+      extents = turned_extents;
+    }
   }
   double largest = 0;
   for (const Extent& extent : extents) largest = std::max(largest, extent.largest_coordinate());
