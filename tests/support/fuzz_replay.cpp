@@ -1,9 +1,10 @@
 // Runs a fuzz target over its seeds and deterministic mutations of them, with any compiler.
 //
-//   TARGET [--mutations N] [--seconds S] [FILE|FOLDER …]
+//   TARGET [--mutations N] [--seconds S] [--write-seeds FOLDER] [FILE|FOLDER …]
 //
 // Files and folders are seeds, besides the target's own fuzz_seeds(). The run ends after N mutations or S seconds. On a
 // crash, the input that did it lies in TARGET.crash in the working folder: run the target on it with --mutations 0.
+// With --write-seeds nothing is run: all seeds go into an existing folder, for libFuzzer to begin with.
 
 #include <unistd.h>
 
@@ -39,6 +40,7 @@ struct Options {
   std::uint64_t mutations = 2000;
   double seconds = 5;
   fs::path crash_file;
+  fs::path seed_folder;  // that they are written to; empty: they are run
   std::vector<Bytes> seeds;
 };
 
@@ -68,6 +70,8 @@ Options parse(int argc, char** argv) {
       options.mutations = std::stoull(argv[++i]);
     } else if (argument == "--seconds" && i + 1 < argc) {
       options.seconds = std::stod(argv[++i]);
+    } else if (argument == "--write-seeds" && i + 1 < argc) {
+      options.seed_folder = argv[++i];
     } else {
       add_seeds(argument, options.seeds);
     }
@@ -178,7 +182,22 @@ int replay(const Options& options) {
   return 0;
 }
 
+int write_seeds(const Options& options) {
+  std::size_t written = 0;
+  for (const Bytes& seed : options.seeds) {
+    std::ofstream file(options.seed_folder / ("seed-" + std::to_string(written)), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(seed.data()), static_cast<std::streamsize>(seed.size()));
+    if (!file.flush()) return std::cerr << "cannot write into " << options.seed_folder << std::endl, 1;
+    ++written;
+  }
+  std::cout << written << " seeds written" << std::endl;
+  return 0;
+}
+
 }  // namespace
 }  // namespace lodestone::test
 
-int main(int argc, char** argv) { return lodestone::test::replay(lodestone::test::parse(argc, argv)); }
+int main(int argc, char** argv) {
+  const auto options = lodestone::test::parse(argc, argv);
+  return options.seed_folder.empty() ? lodestone::test::replay(options) : lodestone::test::write_seeds(options);
+}
