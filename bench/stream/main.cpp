@@ -22,6 +22,7 @@
 #include <lodestone/lod/deviation.h>
 #include <lodestone/lod/place_levels.h>
 #include <lodestone/lod/simplify.h>
+#include <lodestone/pipeline/build_options.h>
 
 #include "gltf/draco_encode.h"
 #include "meshopt_bits.h"
@@ -37,7 +38,7 @@ struct Options {
   std::vector<std::string> scenes = {"mesh/spot/spot_triangulated.obj", "gltf/FlightHelmet/FlightHelmet.gltf",
                                      "skin-morph/Knight.glb", "skin-morph/MorphStressTest.gltf"};
   std::vector<int> bits = {12, 14};
-  std::vector<double> rounds = {0, 1.5, 2};
+  std::vector<double> rounds = {0, kStreamDenseRounds};
   bool curve = false;
   bool placed = false;
   bool codings = false;
@@ -311,7 +312,7 @@ void add_coded(const std::string& name, const Mesh& mesh, const ProgressiveMesh&
 /// Prints what small and fast coding take and how fast they are decoded, of streams with placed levels as `build` makes
 /// them, of all meshes of a file with all their attributes.
 void print_codings(const std::vector<std::filesystem::path>& paths, int bits) {
-  std::printf("\nPositions of %d bits, dense_rounds = 1.5, placed levels\n\n", bits);
+  std::printf("\nPositions of %d bits, dense_rounds = %g, placed levels\n\n", bits, kStreamDenseRounds);
   std::printf(
       "| | bits a vertex, small | fast | more | thousand records a second, small | fast | times |\n"
       "|---|---|---|---|---|---|---|\n");
@@ -319,7 +320,7 @@ void print_codings(const std::vector<std::filesystem::path>& paths, int bits) {
     Coded small, fast;
     for (const Mesh& mesh : scene_meshes(path, {})) {
       SimplifyOptions simplify_options;
-      simplify_options.dense_rounds = 1.5;
+      simplify_options.dense_rounds = kStreamDenseRounds;
       const auto records = simplify(mesh, simplify_options);
       if (!records) die(path.string(), records.error());
       const std::vector<PlacedLevel> placed = place(mesh, records->mesh);

@@ -34,7 +34,7 @@ inline bool is_by_compact_streams(FileLayout layout) {
 
 /// SimplifyOptions::dense_rounds of compact streams: a fifth smaller than with rounds by cost alone, levels of as many
 /// faces a tenth further off.
-inline constexpr double kStreamDenseRounds = 1.5;
+inline constexpr double kStreamDenseRounds = 1.53;
 
 /// What is built of a scene.
 struct BuildOptions {
