@@ -23,6 +23,7 @@ namespace {
 using detail::text;
 
 constexpr int kMaxLevelCount = 32, kMaxThreadCount = 1024;
+constexpr const char* kFileGroup = "File";  // a heading of the help
 
 /// Places a file beside the output, in a folder that is made where it does not exist.
 Result<void> place_beside(std::optional<std::filesystem::path>& file, const std::filesystem::path& input,
@@ -97,6 +98,47 @@ void BuildCommand::add_to(CLI::App& app) {
   app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
       ->check(CLI::IsMember({"glb", "gltf", "lods"}))
       ->type_name("NAME");
+  add_run_options(app);
+  add_level_options(app);
+  add_control_options(app);
+  add_metric_options(app);
+  add_profile_options(app);
+  add_storage_options(app);
+  app.footer(
+      "Examples:\n"
+      "  lodestone build bunny.obj bunny.glb\n"
+      "  lodestone build bunny.obj -o bunny.glb --error 0.1%,0.5%,2% --report bunny.json\n"
+      "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --compress meshopt\n"
+      "  lodestone build bunny.obj -o bunny.glb --html bunny.html\n"
+      "  lodestone build town.gltf -o town.glb --profile files\n"
+      "  lodestone build bunny.obj -o bunny.lods --qp 12\n"
+      "  lodestone build bunny.obj -o bunny.glb --profile stream\n"
+      "  lodestone build *.obj -o lods/");
+}
+
+void SimplifyCommand::add_to(CLI::App& app) {
+  files.add_to(app, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others; - for standard input",
+               "The .glb, .gltf, .obj or .ply to write; a folder, for several inputs; - for standard output");
+  app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
+      ->check(CLI::IsMember({"glb", "gltf", "obj", "ply"}))
+      ->type_name("NAME");
+  add_run_options(app);
+  const char* group = "How far: one of these";
+  targets.add_to(app, group, false);
+  app.add_flag("--per-mesh", per_mesh, "The target is for each mesh; otherwise the whole scene shares it")
+      ->group(group);
+  add_control_options(app);
+  add_metric_options(app);
+  add_storage_options(app);
+  app.footer(
+      "Examples:\n"
+      "  lodestone simplify town.gltf town-small.glb --ratio 25%\n"
+      "  lodestone simplify bunny.ply bunny-5k.ply --faces 5000\n"
+      "  lodestone simplify part.stl part.glb --error 0.1mm --compress none\n"
+      "  lodestone simplify *.obj -o small/ --format obj --error 0.1%");
+}
+
+void BuildCommand::add_run_options(CLI::App& app) {
   app.add_option("--input-format", input_format,
                  "What standard input is, as an extension (default: as its content says)")
       ->type_name("NAME");
@@ -111,20 +153,6 @@ void BuildCommand::add_to(CLI::App& app) {
       ->type_name("N");
   app.add_flag("--strict", strict, "Write nothing and exit with 5 where a target cannot be met");
   app.add_flag("-q,--quiet", quiet, "Print warnings and errors only");
-  add_level_options(app);
-  add_control_options(app);
-  add_metric_options(app);
-  add_format_options(app);
-  app.footer(
-      "Examples:\n"
-      "  lodestone build bunny.obj bunny.glb\n"
-      "  lodestone build bunny.obj -o bunny.glb --error 0.1%,0.5%,2% --report bunny.json\n"
-      "  lodestone build bunny.obj -o bunny.glb --faces 20000,2000 --compress meshopt\n"
-      "  lodestone build bunny.obj -o bunny.glb --html bunny.html\n"
-      "  lodestone build town.gltf -o town.glb --profile files\n"
-      "  lodestone build bunny.obj -o bunny.lods --qp 12\n"
-      "  lodestone build bunny.obj -o bunny.glb --profile stream\n"
-      "  lodestone build *.obj -o lods/");
 }
 
 void BuildCommand::add_level_options(CLI::App& app) {
@@ -180,15 +208,8 @@ void BuildCommand::add_metric_options(CLI::App& app) {
       ->group(group);
 }
 
-void BuildCommand::add_format_options(CLI::App& app) {
-  const char* group = "File";
-  app.add_option(
-         "--placement", placement,
-         "Where a level's vertices lie: fitted to the original (default; skinned and morphed meshes are left out), "
-         "or a subset of its vertices, as in the stream")
-      ->check(CLI::IsMember({"optimised", "subset"}))
-      ->type_name("NAME")
-      ->group(group);
+void BuildCommand::add_profile_options(CLI::App& app) {
+  const char* group = kFileGroup;
   app.add_option(
          "--profile", profile,
          "One file, levels by MSFT_lod (default); a file for each level and an index; or one file of a coarse "
@@ -210,6 +231,17 @@ void BuildCommand::add_format_options(CLI::App& app) {
       ->check(CLI::IsMember({"small", "fast"}))
       ->type_name("NAME")
       ->excludes(none)
+      ->group(group);
+}
+
+void BuildCommand::add_storage_options(CLI::App& app) {
+  const char* group = kFileGroup;
+  app.add_option(
+         "--placement", placement,
+         "Where a level's vertices lie: fitted to the original (default; skinned and morphed meshes are left out), "
+         "or a subset of its vertices, as in the stream")
+      ->check(CLI::IsMember({"optimised", "subset"}))
+      ->type_name("NAME")
       ->group(group);
   CLI::Option* compress =
       app.add_option(

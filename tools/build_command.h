@@ -22,9 +22,10 @@ namespace lodestone::tool {
 class MadeFolders;
 
 /// `lodestone build`: a scene or mesh file in, a progressive multi-LOD .glb or .gltf out; or several, each for itself.
+/// With the profile "level" it is what SimplifyCommand makes.
 struct BuildCommand {
   FileWords files;
-  std::string format = "glb";   ///< of what goes into a folder or to the standard output; or gltf, lods
+  std::string format = "glb";   ///< of what goes into a folder or to the standard output; or gltf, lods, obj, ply
   std::string input_format;     ///< of the standard input, an extension without the dot; empty: go by the content
   std::filesystem::path input;  ///< one of the files, as the next
   std::filesystem::path output;
@@ -60,12 +61,22 @@ struct BuildCommand {
   /// Errors: any; nothing is written then of an input that has one.
   Result<Outcome> run() const;
 
- private:
-  Result<std::vector<BuildCommand>> split(MadeFolders& folders) const;
+ protected:
+  void add_run_options(CLI::App& app);
   void add_level_options(CLI::App& app);
   void add_metric_options(CLI::App& app);
   void add_control_options(CLI::App& app);
-  void add_format_options(CLI::App& app);
+  void add_profile_options(CLI::App& app);
+  void add_storage_options(CLI::App& app);
+
+ private:
+  Result<std::vector<BuildCommand>> split(MadeFolders& folders) const;
+};
+
+/// `lodestone simplify`: a scene or mesh file in, one file with fewer faces out, and nothing beside them.
+struct SimplifyCommand : BuildCommand {
+  SimplifyCommand() { profile = "level"; }
+  void add_to(CLI::App& app);
 };
 
 }  // namespace lodestone::tool

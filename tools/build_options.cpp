@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -66,27 +67,52 @@ bool has_file_per_level(const BuildCommand& options) { return options.profile ==
 
 bool shows_one_level(const BuildCommand& options) { return options.profile == "stream"; }
 
+bool has_one_level(const BuildCommand& options) { return options.profile == "level"; }
+
+std::string output_extension(const BuildCommand& command) {
+  return is_standard_stream(command.output) ? command.format : extension_of(command.output);
+}
+
+bool writes_mesh_file(const BuildCommand& command) {
+  const std::string extension = output_extension(command);
+  return has_one_level(command) && (extension == "obj" || extension == "ply");
+}
+
 bool writes_stream_file(const BuildCommand& command) {
-  return is_standard_stream(command.output) ? command.format == "lods" : extension_of(command.output) == "lods";
+  return !has_one_level(command) && output_extension(command) == "lods";
 }
 
 namespace {
 
+/// An option that a kind of output has no use for.
+struct IdleOption {
+  bool is_given;
+  const char* name;
+  const char* why;
+};
+
+Result<void> check_idle(std::span<const IdleOption> options) {
+  for (const IdleOption& option : options)
+    if (option.is_given) return fail(ErrorCode::InvalidArgument, detail::text(option.name, ": ", option.why));
+  return {};
+}
+
 /// Options of files with levels, which a stream has none of, or that streams have nothing for.
 Result<void> check_stream_file(const BuildCommand& command) {
-  struct Given {
-    bool given;
-    const char* name;
-    const char* why;
-  };
-  const std::array given = {Given{command.per_mesh, "--per-mesh", "a .lods is one mesh"},
-                            Given{command.profile != "msft-lod", "--profile", "a .lods is one file"},
-                            Given{command.no_stream, "--no-stream", "a .lods is a stream"},
-                            Given{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
-                            Given{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}};
-  for (const Given& option : given)
-    if (option.given) return fail(ErrorCode::InvalidArgument, detail::text(option.name, ": ", option.why));
-  return {};
+  return check_idle(
+      std::array{IdleOption{command.per_mesh, "--per-mesh", "a .lods is one mesh"},
+                 IdleOption{command.profile != "msft-lod", "--profile", "a .lods is one file"},
+                 IdleOption{command.no_stream, "--no-stream", "a .lods is a stream"},
+                 IdleOption{command.compression != "draco", "--compress", "a .lods is compressed in its own way"},
+                 IdleOption{command.grid_step.has_value(), "--grid-step", "a .lods does not have it"}});
+}
+
+/// Options of how a glTF is stored.
+Result<void> check_mesh_file(const BuildCommand& command) {
+  constexpr const char* kWhy = "a .obj or .ply keeps positions as they are";
+  return check_idle(std::array{IdleOption{command.compression != "draco", "--compress", kWhy},
+                               IdleOption{command.position_bits.has_value(), "--qp", kWhy},
+                               IdleOption{command.grid_step.has_value(), "--grid-step", kWhy}});
 }
 
 /// A stream has every level; only reports and pages have some.
@@ -108,6 +134,11 @@ Result<void> check_stream_bits(const BuildCommand& command) {
 Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
   Result<std::vector<LevelTarget>> given = options.targets.parse();
   if (!given) return given;
+  if (has_one_level(options)) {
+    if (given->size() != 1)
+      return fail(ErrorCode::InvalidArgument, "give one value with one of --ratio, --faces, --error, --epsilon");
+    return given;
+  }
   if (shows_one_level(options)) {
     if (given->size() > 1 || options.level_count)
       return fail(ErrorCode::InvalidArgument, "--profile stream shows one level: give one target, and no --levels");
@@ -149,7 +180,7 @@ Compression compression_of(const std::string& name) {
 
 Result<AssetOptions> asset_options(const BuildCommand& options) {
   AssetOptions asset;
-  asset.compression = compression_of(options.compression);
+  asset.compression = writes_mesh_file(options) ? Compression::None : compression_of(options.compression);
   asset.position_bits = options.position_bits;
   if (!options.grid_step) return asset;
   if (asset.compression == Compression::Meshopt && options.grid_origin != BuildCommand{}.grid_origin)
@@ -162,10 +193,13 @@ Result<AssetOptions> asset_options(const BuildCommand& options) {
 
 }  // namespace
 
-bool writes_stream(const BuildCommand& options) { return !options.no_stream && !has_file_per_level(options); }
+bool writes_stream(const BuildCommand& options) {
+  return !options.no_stream && !has_file_per_level(options) && !has_one_level(options);
+}
 
 Result<BuildOptions> build_options(const BuildCommand& command) {
   if (writes_stream_file(command)) LODESTONE_CHECK(check_stream_file(command));
+  if (writes_mesh_file(command)) LODESTONE_CHECK(check_mesh_file(command));
   if (writes_stream_file(command) || shows_one_level(command)) LODESTONE_CHECK(check_stream_bits(command));
   BuildOptions options;
   options.effort = command.effort;
@@ -178,19 +212,21 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   options.scope = command.per_mesh ? TargetScope::Mesh : TargetScope::Scene;
   options.placement = command.placement == "subset" ? Placement::Subset : Placement::Optimised;
   if (has_file_per_level(command)) options.layout = FileLayout::FilePerLevel;
+  if (has_one_level(command)) options.layout = FileLayout::OneLevel;
   if (shows_one_level(command)) options.layout = FileLayout::Refined;
   if (writes_stream_file(command)) options.layout = FileLayout::StreamAlone;
   options.stream = !command.no_stream;
   options.lossless = command.lossless;
   options.stream_coding = command.stream_coding == "fast" ? CompactCoding::Fast : CompactCoding::Small;
   options.strict = command.strict;
-  options.keep_levels = command.html.has_value();
+  options.keep_levels = command.html.has_value() || writes_mesh_file(command);
   LODESTONE_TRY(options.storage, asset_options(command));
   if (extension_of(command.output) == "gltf") options.storage.gltf_name = command.output.stem().string();
   return options;
 }
 
 Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count) {
+  const bool has_own_form = writes_stream_file(options) || writes_mesh_file(options);
   Json json = {{"effort", options.effort},
                {"metric", options.metric},
                {"normalise", options.normalisation},
@@ -208,7 +244,7 @@ Json settings_json(const BuildCommand& options, const AttributeWeights& weights,
                {"stream", writes_stream(options)},
                {"lossless", options.lossless},
                {"stream_coding", options.stream_coding},
-               {"compression", writes_stream_file(options) ? Json(nullptr) : Json(options.compression)}};
+               {"compression", has_own_form ? Json(nullptr) : Json(options.compression)}};
   const bool has_grid = compression_of(options.compression) != Compression::None;
   const bool has_bits = has_grid && options.position_bits;
   json["position_bits"] = has_bits ? Json(*options.position_bits) : Json(nullptr);

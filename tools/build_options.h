@@ -17,6 +17,15 @@ bool has_file_per_level(const BuildCommand& options);
 /// True with `--profile stream`: one coarse level in the file, all others in its stream.
 bool shows_one_level(const BuildCommand& options);
 
+/// True for `simplify`: one level in the file, and nothing else.
+bool has_one_level(const BuildCommand& options);
+
+/// Returns the extension of what is written, without its dot, whether the output's name has it or `--format` says it.
+std::string output_extension(const BuildCommand& command);
+
+/// True where triangles alone are written, as a .obj or .ply.
+bool writes_mesh_file(const BuildCommand& command);
+
 /// True where a stream alone is written, as a .lods.
 bool writes_stream_file(const BuildCommand& command);
 

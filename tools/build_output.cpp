@@ -9,7 +9,9 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/io/file.h>
+#include <lodestone/io/scene.h>
 #include <lodestone/io/screen_coverage.h>
+#include <lodestone/io/write_mesh.h>
 
 #include "asset_files.h"
 #include "build_options.h"
@@ -49,12 +51,15 @@ Result<void> check_format(const BuildCommand& options) {
     return {};
   }
   const std::string extension = extension_of(options.output);
-  if (extension == "glb" || extension == "gltf" || extension == "lods") return {};
-  const std::string hint = extension.empty() ? ": write '" + options.output.string() + ".glb', or '" +
-                                                   options.output.string() + "/' for a folder"
-                                             : "";
+  const bool is_own = has_one_level(options) ? writes_mesh_file(options) : extension == "lods";
+  if (extension == "glb" || extension == "gltf" || is_own) return {};
+  std::string hint;
+  if (extension.empty())
+    hint = ": write '" + options.output.string() + ".glb', or '" + options.output.string() + "/' for a folder";
+  if (extension == "obj" || extension == "ply") hint = "; lodestone simplify writes one of that kind";
   return fail(ErrorCode::InvalidArgument,
-              "-o: " + quoted(options.output) + " does not end in .glb, .gltf or .lods" + hint);
+              "-o: " + quoted(options.output) + " does not end in " +
+                  (has_one_level(options) ? ".glb, .gltf, .obj or .ply" : ".glb, .gltf or .lods") + hint);
 }
 
 Result<void> check_path(const BuildCommand& options, const std::filesystem::path& path) {
@@ -140,6 +145,16 @@ Result<void> check_paths(const BuildCommand& options, std::size_t level_count) {
     LODESTONE_CHECK(check_page_path(options, level_count));
   }
   return options.report ? check_destination(*options.report) : Result<void>();
+}
+
+Result<void> make_mesh_file(const BuildCommand& options, const Scene& scene, BuildReport& report) {
+  const std::size_t last = report.build.levels.size() - 1;
+  LODESTONE_TRY(const Mesh surface, level_surface(scene, report.build.decoded, last));
+  EncodedAsset file;
+  LODESTONE_TRY(file.glb, write_mesh_bytes(surface, "level." + output_extension(options)));
+  report.build.levels[last].bytes = file.layout.total_bytes = file.glb.size();
+  report.build.files.assign(1, std::move(file));
+  return {};
 }
 
 void list_files(const BuildCommand& options, BuildReport& report) {

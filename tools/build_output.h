@@ -19,6 +19,10 @@ std::vector<std::filesystem::path> output_paths(const BuildCommand& options, std
 /// Errors: InvalidArgument, NotWritten.
 Result<void> check_paths(const BuildCommand& options, std::size_t level_count);
 
+/// Puts the triangles of the level in the place of its glTF, where a .obj or .ply is asked for. Pre: the build is done
+/// and has kept its levels. Errors: Malformed, LimitExceeded, as `level_surface`.
+Result<void> make_mesh_file(const BuildCommand& options, const Scene& scene, BuildReport& report);
+
 /// Enters the encoded files in the report, under the paths that they will have. Pre: the build
 /// is done.
 void list_files(const BuildCommand& options, BuildReport& report);

@@ -119,7 +119,7 @@ std::vector<std::string> row_of(std::size_t number, const BuildResult::Level& le
           std::to_string(level.vertex_count),
           percent_text(level.deviation.maximum(), diagonal),
           percent_text(std::max(level.deviation.forward.mean, level.deviation.backward.mean), diagonal),
-          std::to_string(level.bytes),
+          level.bytes > 0 ? std::to_string(level.bytes) : "-",
           stopped_text(level, diagonal)};
 }
 

@@ -193,6 +193,7 @@ Result<Scene> read_input(const BuildCommand& options, std::vector<Index>& materi
 
 Result<void> write(const BuildCommand& options, const Scene& scene, BuildReport& report) {
   report.output_path = options.output.string();
+  if (writes_mesh_file(options)) LODESTONE_CHECK(make_mesh_file(options, scene, report));
   list_files(options, report);
   std::string page;
   if (options.html) {

@@ -69,8 +69,10 @@ class Program {
         "5 target not met (with --strict), 130 interrupted\n\n"
         "Example:\n"
         "  lodestone bunny.obj bunny.glb        (the same as lodestone build bunny.obj -o bunny.glb)\n"
-        "  lodestone extract bunny.glb --error 0.1% -o bunny-near.glb");
+        "  lodestone extract bunny.glb --error 0.1% -o bunny-near.glb\n"
+        "  lodestone simplify bunny.obj bunny-small.obj --ratio 10%");
     add("build", "Turn a mesh file into a progressive multi-LOD .glb or .gltf", build_);
+    add("simplify", "Make one file with fewer faces of a mesh or scene", simplify_);
     add("extract", "Take one level out of a .glb's removal stream", extract_);
     add("inspect", "Show the levels, faces, errors and bytes of a file", inspect_);
     add("compare", "Measure how far apart two surfaces are", compare_);
@@ -91,6 +93,7 @@ class Program {
 
   CLI::App app_{"Progressive, multi-LOD assets from triangle meshes", "lodestone"};
   BuildCommand build_;
+  SimplifyCommand simplify_;
   ExtractCommand extract_;
   InspectCommand inspect_;
   CompareCommand compare_;

@@ -250,7 +250,7 @@ TEST_CASE("what other programs call it is answered with our word") {
                 {"'-si'", "--ratio", "'-se'", "--error", "'-cc'", "--compress meshopt"});
   check_refused({"build", "ball.obj", "o.glb", "-slb", "-noq", "-vp", "12", "-kn"},
                 {"--lock-border", "--compress none", "--qp", "stay"});
-  check_refused({"simplify", "ball.obj", "o.glb", "--ratio", "0.5"}, {"'simplify'", "is build here"});
+  check_refused({"decimate", "ball.obj", "o.glb", "--ratio", "0.5"}, {"'decimate'", "is simplify here"});
   check_refused({"optimize", "ball.obj", "o.glb"}, {"is build here"});
   check_refused({"build", "ball.obj", "o.glb", "--simplify-error", "0.001", "--compress", "draco"}, {"--error"});
   check_refused({"build", "ball.obj", "o.glb", "--draco"}, {"--compress"});

@@ -197,6 +197,11 @@ void keep_levels(const std::vector<std::vector<AssetLevel>>& meshes, BuildResult
     for (const AssetLevel& level : meshes[mesh]) result.decoded[mesh].levels.push_back(level);
 }
 
+/// Keeps the whole meshes as they are, where no file has them.
+void keep_whole(const Scene& scene, BuildResult& result) {
+  for (const SceneMesh& mesh : scene.meshes()) result.decoded.emplace_back().levels.emplace_back().mesh = mesh.mesh;
+}
+
 /// Encodes the levels that a file holds, measures them as they come out of it, and writes it with their numbers.
 Result<void> make_file(MeasuredScene& measured, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
                        const BuildOptions& options, const FileLevels& file, BuildResult& result, Notes& notes,
@@ -331,6 +336,8 @@ Result<void> check_options(const BuildOptions& options) {
   if (options.layout == FileLayout::Refined && options.targets.size() > 1)
     return fail(ErrorCode::InvalidArgument,
                 text(options.targets.size(), " targets, where the file shows one level and streams the others"));
+  if (options.layout == FileLayout::OneLevel && options.targets.size() != 1)
+    return fail(ErrorCode::InvalidArgument, text(options.targets.size(), " targets, where the file has one level"));
   if (!is_by_compact_streams(options.layout)) return {};
   if (options.storage.position_grid)
     return fail(ErrorCode::Unsupported, "a grid of a given step, which compact streams do not have");
@@ -399,11 +406,13 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
         make_refined_file(measured, plan, levels, options, result, notes, writing.part(1 - kStreamsShare), observer));
     return result;
   }
+  const std::size_t first = options.layout == FileLayout::OneLevel ? plan.level_count() - 1 : 0;
+  if (first > 0 && options.keep_levels) keep_whole(scene, result);
   const std::size_t file_count = options.layout == FileLayout::FilePerLevel ? plan.level_count() : 1;
   const double share = (1 - kStreamsShare) / static_cast<double>(file_count);
   for (std::size_t i = 0; i < file_count; ++i)
-    LODESTONE_CHECK(
-        make_file(measured, plan, levels, options, {i, file_count, i}, result, notes, writing.part(share), observer));
+    LODESTONE_CHECK(make_file(measured, plan, levels, options, {i, file_count, first + i}, result, notes,
+                              writing.part(share), observer));
   return result;
 }
 

@@ -23,6 +23,7 @@ enum class Placement {
 enum class FileLayout {
   OneFile,       ///< all levels in one file, by MSFT_lod
   FilePerLevel,  ///< a file for each level; none has a stream
+  OneLevel,      ///< the level of the only target alone, without levels or streams beside it
   Refined,       ///< one file of the coarsest level and a compact stream of every other, up to the whole mesh
   StreamAlone,   ///< a compact stream and nothing else, of a scene of one mesh; the levels are those it is measured at
 };
