@@ -185,7 +185,7 @@ void BuildCommand::add_control_options(CLI::App& app) {
          "from 1000 on the vertex stays; a COLOR_n counts 1/16 where black, 16 where bright, and stays where white")
       ->type_name("NAME")
       ->group(group);
-  app.add_option("--settings", settings, "Importance and locks of materials and nodes, by name; see the README")
+  app.add_option("--settings", settings, "Importance and locks of materials and nodes, by name; see docs/program.md")
       ->type_name("S.json")
       ->group(group);
   app.add_flag("--vanish", vanish, "Let even the last piece of a mesh vanish where the target asks for it")
