@@ -124,7 +124,7 @@ void SimplifyCommand::add_to(CLI::App& app) {
       ->type_name("NAME");
   add_run_options(app);
   const char* group = "How far: one of these";
-  targets.add_to(app, group, false);
+  targets.add_to(app, group, false, true);
   app.add_flag("--per-mesh", per_mesh, "The target is for each mesh; otherwise the whole scene shares it")
       ->group(group);
   add_control_options(app);
@@ -161,7 +161,7 @@ void BuildCommand::add_level_options(CLI::App& app) {
       ->check(CLI::Range(1, kMaxLevelCount))
       ->type_name("N")
       ->group(group);
-  targets.add_to(app, group, true);
+  targets.add_to(app, group, true, true);
   app.add_flag("--per-mesh", per_mesh, "Targets are for each mesh; otherwise the whole scene shares them")
       ->group(group);
 }

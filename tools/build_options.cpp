@@ -131,32 +131,30 @@ Result<void> check_stream_bits(const BuildCommand& command) {
                                                        kMostGridBits, " bits, not ", *bits));
 }
 
-Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options) {
-  Result<std::vector<LevelTarget>> given = options.targets.parse();
-  if (!given) return given;
+Result<std::vector<LevelTarget>> requested_levels(const BuildCommand& options, const std::vector<LevelTarget>& given) {
   if (has_one_level(options)) {
-    if (given->size() != 1)
+    if (given.size() != 1)
       return fail(ErrorCode::InvalidArgument, "give one value with one of --ratio, --faces, --error, --epsilon");
     return given;
   }
   if (shows_one_level(options)) {
-    if (given->size() > 1 || options.level_count)
+    if (given.size() > 1 || options.level_count)
       return fail(ErrorCode::InvalidArgument, "--profile stream shows one level: give one target, and no --levels");
     if (options.no_stream) return fail(ErrorCode::InvalidArgument, "--no-stream: --profile stream is a stream");
-    return given->empty() ? ratio_targets(kShownRatio, 1) : given;
+    return given.empty() ? ratio_targets(kShownRatio, 1) : given;
   }
   if (writes_stream_file(options)) {
-    LODESTONE_CHECK(check_stream_levels(options, *given));
+    LODESTONE_CHECK(check_stream_levels(options, given));
     if (!options.report && !options.html) return given;
   }
-  const bool by_ratio = given->empty() || options.targets.is_one_ratio();
+  const bool by_ratio = given.empty() || options.targets.is_one_ratio();
   if (!by_ratio && options.level_count) {
     return fail(ErrorCode::InvalidArgument, "--levels goes with one --ratio; a list has one level for each entry");
   }
   if (!by_ratio) return given;
-  const double ratio = given->empty() ? kDefaultRatio : given->front().value;
+  const double ratio = given.empty() ? kDefaultRatio : given.front().value;
   std::vector<LevelTarget> levels = ratio_targets(ratio, options.level_count.value_or(kDefaultLevelCount) - 1);
-  for (LevelTarget& level : levels) level.is_wish = given->empty();
+  for (LevelTarget& level : levels) level.is_wish = given.empty();
   return levels;
 }
 
@@ -203,7 +201,9 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   if (writes_stream_file(command) || shows_one_level(command)) LODESTONE_CHECK(check_stream_bits(command));
   BuildOptions options;
   options.effort = command.effort;
-  LODESTONE_TRY(options.targets, requested_levels(command));
+  LODESTONE_TRY(const TargetOptions::Parsed given, command.targets.parse());
+  LODESTONE_TRY(options.targets, requested_levels(command, given.targets));
+  options.limit = given.limit;
   LODESTONE_TRY(options.simplify, simplify_options(command));
   if (command.settings) {
     LODESTONE_TRY(options.importance, read_settings(*command.settings));
@@ -225,20 +225,22 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   return options;
 }
 
-Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count) {
+Json settings_json(const BuildCommand& options, const BuildOptions& understood) {
+  const std::optional<LevelTarget>& limit = understood.limit;
   const bool has_own_form = writes_stream_file(options) || writes_mesh_file(options);
   Json json = {{"effort", options.effort},
                {"metric", options.metric},
                {"normalise", options.normalisation},
                {"reference", options.reference},
-               {"levels", level_count},
+               {"levels", understood.targets.size() + 1},
                {"per_mesh", options.per_mesh},
+               {"error_limit", limit ? Json{{limit->relative ? "error_ratio" : "error", limit->value}} : Json(nullptr)},
                {"placement", options.placement},
                {"profile", writes_stream_file(options) ? "lods" : options.profile},
                {"lock_border", options.lock_border},
                {"vanish", options.vanish},
                {"crease_angle_degrees", options.crease_angle ? Json(*options.crease_angle) : Json(nullptr)},
-               {"weights", weights_json(weights)},
+               {"weights", weights_json(understood.simplify.weights)},
                {"importance", options.importance},
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", writes_stream(options)},

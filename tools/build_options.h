@@ -35,7 +35,7 @@ bool writes_stream(const BuildCommand& command);
 /// Returns what the options mean, the settings file read. Errors: InvalidArgument, Unreadable, Malformed.
 Result<BuildOptions> build_options(const BuildCommand& command);
 
-/// Returns the options as understood, for the report; `weights` are those of build_options.
-Json settings_json(const BuildCommand& options, const AttributeWeights& weights, std::size_t level_count);
+/// Returns the options as understood, for the report; `understood`: what build_options returns of them.
+Json settings_json(const BuildCommand& options, const BuildOptions& understood);
 
 }  // namespace lodestone::tool

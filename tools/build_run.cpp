@@ -211,7 +211,7 @@ Result<FinishedBuild> run_build(const BuildCommand& command, ProgressBar& bar) {
   LODESTONE_TRY(BuildOptions options, build_options(command));
   const std::size_t level_count = options.targets.size() + 1;
   LODESTONE_CHECK(check_paths(command, level_count));
-  report.settings = settings_json(command, options.simplify.weights, level_count);
+  report.settings = settings_json(command, options);
 
   LODESTONE_TRY(const Scene scene, read_input(command, options.material_numbers, report, bar));
   BarObserver observer(bar);

@@ -203,7 +203,7 @@ void ExtractCommand::add_to(CLI::App& app) {
       ->check(CLI::IsMember({"glb", "gltf", "obj", "ply"}))
       ->type_name("NAME");
   const char* group = "Target: one of these";
-  target.add_to(app, group, false);
+  target.add_to(app, group, false, false);
   app.add_option("--level", level, "This level as it stands in the file, 0 the finest")->type_name("N")->group(group);
   app.add_flag("--strict", strict, "Write nothing and exit with 5 where the target cannot be met");
   app.add_flag("-q,--quiet", quiet, "Print warnings and errors only");
@@ -219,8 +219,9 @@ Result<Outcome> ExtractCommand::run() const {
   LODESTONE_TRY(const std::vector<FilePair> pairs, files.pair_up("." + format));
   if (pairs.size() > 1) return fail(ErrorCode::InvalidArgument, "extract takes one input");
   const std::filesystem::path& input = pairs.front().input;
-  LODESTONE_TRY(const std::vector<LevelTarget> targets, target.parse());
-  if (targets.size() + (level ? 1 : 0) != 1) {
+  LODESTONE_TRY(const TargetOptions::Parsed wanted, target.parse());
+  const std::vector<LevelTarget>& targets = wanted.targets;
+  if (wanted.limit || targets.size() + (level ? 1 : 0) != 1) {
     return fail(ErrorCode::InvalidArgument, "give one value with one of --error, --epsilon, --faces, --ratio, --level");
   }
   MadeFolders folders;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -90,8 +91,8 @@ Result<std::vector<LevelTarget>> parse_targets(const std::vector<std::string>& l
 
 }  // namespace
 
-void TargetOptions::add_to(CLI::App& app, const char* group, bool lists) {
-  const auto add = [&](const char* name, std::vector<std::string>& values, const char* help) {
+void TargetOptions::add_to(CLI::App& app, const char* group, bool lists, bool limits) {
+  const auto add = [&](const char* name, std::vector<std::string>& values, const std::string& help) {
     app.add_option(name, values, help)->allow_extra_args(false)->type_name(lists ? "LIST" : "VALUE")->group(group);
   };
   add("--ratio", ratio,
@@ -99,26 +100,34 @@ void TargetOptions::add_to(CLI::App& app, const char* group, bool lists) {
             : "At most this share of the whole mesh's faces: 0.1 or 10%");
   add("--faces", faces, "At most so many faces");
   add("--error", error,
-      "At most so much deviation: 0.1% of the bounding box's diagonal; 1px@1080p where that fills the screen's height; "
-      "1mm (cm, m, in, ft; a glTF is in metres); or a plain number in the file's units");
+      std::string("At most so much deviation: 0.1% of the bounding box's diagonal; 1px@1080p where that fills the "
+                  "screen's height; 1mm (cm, m, in, ft; a glTF is in metres); or a plain number in the file's units") +
+          (limits ? "; beside --ratio, --faces or --epsilon one that nothing goes beyond" : ""));
   add("--epsilon", epsilon, "At most so much curvature error: radians (gaussian) or file units (the others)");
 }
 
-Result<std::vector<LevelTarget>> TargetOptions::parse() const {
+Result<TargetOptions::Parsed> TargetOptions::parse() const {
   const struct {
     const std::vector<std::string>& lists;
     ParseTarget parse;
-  } kinds[] = {{ratio, parse_ratio}, {faces, parse_faces}, {error, parse_error}, {epsilon, parse_epsilon}};
-  std::vector<LevelTarget> targets;
+  } kinds[] = {{ratio, parse_ratio}, {faces, parse_faces}, {epsilon, parse_epsilon}};
+  Parsed parsed;
   int given = 0;
   for (const auto& [lists, parse] : kinds) {
     if (lists.empty()) continue;
-    if (++given > 1) return fail(ErrorCode::InvalidArgument, "give only one of --ratio, --faces, --error, --epsilon");
-    Result<std::vector<LevelTarget>> parsed = parse_targets(lists, parse);
-    if (!parsed) return parsed;
-    targets = std::move(*parsed);
+    if (++given > 1) return fail(ErrorCode::InvalidArgument, "give only one of --ratio, --faces, --epsilon");
+    LODESTONE_TRY(parsed.targets, parse_targets(lists, parse));
   }
-  return targets;
+  LODESTONE_TRY(std::vector<LevelTarget> errors, parse_targets(error, parse_error));
+  if (given == 0) {
+    parsed.targets = std::move(errors);
+  } else if (errors.size() > 1) {
+    return fail(ErrorCode::InvalidArgument,
+                "--error: with --ratio, --faces or --epsilon it limits all levels: give one value");
+  } else if (!errors.empty()) {
+    parsed.limit = errors.front();
+  }
+  return parsed;
 }
 
 bool TargetOptions::is_one_ratio() const { return split_lists(ratio).size() == 1; }

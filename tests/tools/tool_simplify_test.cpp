@@ -101,6 +101,44 @@ TEST_CASE("simplify: an error is kept, as measured on what was written") {
   }
 }
 
+TEST_CASE("simplify: faces and an error together go to where the first of them stops") {
+  for (const TriangleSoup& soup : shapes()) {
+    const Place place(soup);
+    const auto faces = [&](const std::vector<std::string>& options, const char* stopped_by) {
+      std::vector<std::string> all = {"--report", place.file("r.json"), "--strict", "-q"};
+      all.insert(all.begin(), options.begin(), options.end());
+      const ProgramRun run = place.simplify(place.file("o.ply"), all);
+      CAPTURE(run.err);
+      REQUIRE(run.exit_code == 0);
+      const Json report = Json::parse(file_text(place.file("r.json")));
+      CHECK(report["levels"].back()["stopped_by"] == stopped_by);
+      CHECK((report["settings"]["error_limit"].is_null() == (options.size() < 4)));
+      return read_mesh(place.file("o.ply"))->mesh.face_count();
+    };
+    const std::size_t by_error = faces({"--error", "1%"}, "error");
+    const std::string fewer = std::to_string(by_error - 2), more = std::to_string(by_error + 20);
+    CAPTURE(by_error, place.whole().face_count());
+    CHECK(faces({"--faces", fewer, "--error", "1%"}, "error") == by_error);
+    const double reached = measure_deviation(place.whole(), read_mesh(place.file("o.ply"))->mesh).maximum();
+    CHECK(reached <= 0.01 * bounding_box(place.whole()).diagonal() * 1.001);
+    CHECK(faces({"--faces", more, "--error", "1%"}, "faces") == faces({"--faces", more}, "faces"));
+  }
+}
+
+TEST_CASE("build: no level goes beyond an error beside other targets") {
+  const Place place;
+  const std::string report = place.file("r.json");
+  const ProgramRun run = run_program({"build", place.in, place.file("o.glb"), "--no-stream", "--faces",
+                                      "1000,600,300,100", "--error", "1%", "--report", report, "-q"});
+  REQUIRE(run.exit_code == 0);
+  const Json json = Json::parse(file_text(report));
+  REQUIRE(json["levels"].size() >= 2);
+  const double limit = 0.01 * json["input"]["bounding_box"]["diagonal"].get<double>();
+  for (const Json& level : json["levels"]) CHECK(level["deviation"]["max"] <= limit * 1.001);
+  CHECK(json["levels"].back()["stopped_by"] == "error");
+  CHECK(json["left_out"].size() + json["levels"].size() == 5);
+}
+
 TEST_CASE("simplify: a ratio of 1 writes the whole mesh") {
   const Place place;
   for (const char* name : {"out.glb", "out.ply"}) {
@@ -174,6 +212,7 @@ TEST_CASE("simplify: what cannot be is refused before anything is written") {
   refused("o.glb", {}, 1, "give one value");
   refused("o.glb", {"--ratio", "0.5,0.25"}, 1, "one");
   refused("o.glb", {"--ratio", "0.5", "--faces", "9"}, 1, "--faces");
+  refused("o.glb", {"--ratio", "0.5", "--error", "0.1%,1%"}, 1, "one value");
   refused("o.stl", {"--ratio", "0.5"}, 1, ".glb, .gltf, .obj or .ply");
   refused("o.lods", {"--ratio", "0.5"}, 1, ".glb, .gltf, .obj or .ply");
   refused("o.obj", {"--ratio", "0.5", "--compress", "meshopt"}, 1, "--compress");

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <lodestone/lod/cursor.h>
@@ -19,7 +20,9 @@ constexpr double kBoxGrowth = 1.05;         // fitted vertices may lie a little 
 /// The smallest error that a level may have, world units; infinite where levels are not by error.
 double smallest_error(const Scene& scene, const BuildOptions& options) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (const LevelTarget& target : options.targets) {
+  std::vector<LevelTarget> targets = options.targets;
+  if (options.limit) targets.push_back(*options.limit);
+  for (const LevelTarget& target : targets) {
     if (target.kind != TargetKind::Error) continue;
     if (!target.relative || options.scope == TargetScope::Scene)
       smallest = std::min(smallest, resolve(target, {0, scene.box().diagonal()}).value);
@@ -72,6 +75,20 @@ std::vector<ScenePart> parts_of(MeasuredScene& measured, const std::vector<Simpl
   return parts;
 }
 
+/// Takes a choice back to where the limit is kept, as it then answers that.
+void keep_within(const SceneChoice& limit, SceneChoice& choice) {
+  bool is_beyond = false;
+  for (std::size_t i = 0; i < choice.positions.size(); ++i) {
+    is_beyond = is_beyond || choice.positions[i] < limit.positions[i];
+    choice.positions[i] = std::max(choice.positions[i], limit.positions[i]);
+  }
+  if (!is_beyond) return;
+  choice.target = limit.target;
+  choice.met = limit.met;
+  choice.stopped_by = limit.stopped_by;
+  choice.beyond.clear();
+}
+
 SceneChoice whole_scene(const std::vector<SimplifyResult>& simplified) {
   SceneChoice choice{{}, {}, true, "whole", {}};
   for (const SimplifyResult& result : simplified)
@@ -80,6 +97,10 @@ SceneChoice whole_scene(const std::vector<SimplifyResult>& simplified) {
 }
 
 }  // namespace
+
+bool is_by_error(const BuildOptions& options) {
+  return options.limit || (!options.targets.empty() && options.targets.back().kind == TargetKind::Error);
+}
 
 bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplified, std::size_t mesh,
               std::size_t level) {
@@ -90,10 +111,13 @@ LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>
                       const BuildOptions& options, SceneFitter& fitter, const Progress& progress) {
   const Scene& scene = measured.scene();
   const std::vector<ScenePart> parts = parts_of(measured, simplified, options, fitter, progress);
-  LevelPlan plan{{whole_scene(simplified)}, {}, 0};
+  LevelPlan plan{{whole_scene(simplified)}, {}, 0, is_by_error(options)};
+  std::optional<SceneChoice> limit;
+  if (options.limit) limit = choose_positions(parts, *options.limit, options.scope, scene.box().diagonal());
   for (const ScenePart& part : parts) plan.grid_error = std::max(plan.grid_error, part.displacement * part.scale);
   for (const LevelTarget& target : options.targets) {
     SceneChoice choice = choose_positions(parts, target, options.scope, scene.box().diagonal());
+    if (limit) keep_within(*limit, choice);
     const std::vector<Index>& before = plan.choices.back().positions;
     for (std::size_t i = 0; i < before.size() && !choice.met; ++i)
       choice.positions[i] = std::min(choice.positions[i], before[i]);

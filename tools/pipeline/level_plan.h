@@ -17,6 +17,7 @@ struct LevelPlan {
   std::vector<SceneChoice> choices;  ///< by level; the first is the whole scene
   std::vector<BuildResult::LeftOut> left_out;
   double grid_error = 0;  ///< see `BuildResult`
+  bool by_error = false;  ///< levels keep to an error, theirs or a limit
 
   std::size_t level_count() const { return choices.size(); }
   /// Whether a mesh's level is the one before.
@@ -29,10 +30,13 @@ struct LevelPlan {
 bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplified, std::size_t mesh,
               std::size_t level);
 
-/// Finds each mesh's positions: the whole scene, then what answers the targets. What would repeat the level before is
-/// left out.
+/// Finds each mesh's positions: the whole scene, then what answers the targets, within the limit. What would repeat the
+/// level before is left out.
 LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
                       const BuildOptions& options, SceneFitter& fitter, const Progress& progress);
+
+/// Whether levels keep to an error: their own, or one that limits them all.
+bool is_by_error(const BuildOptions& options);
 
 /// Sorts targets of one kind: finest first, by what they come to for the whole scene. Errors: InvalidArgument for
 /// several kinds.

@@ -16,6 +16,7 @@ struct LevelSource {
   const SimplifyResult& simplified;
   const SceneChoice& choice;
   std::size_t mesh = 0;
+  bool by_error = false;  ///< it keeps to one
   Progress progress;
 };
 
@@ -35,8 +36,7 @@ AssetLevel make_level(const LevelSource& source, MeasuredScene& measured, SceneF
   if (!fitter.fits(source.mesh) || position == progressive.record_count()) return level;
   Mesh fitted = fitter.fitted(source.mesh, level.mesh, source.progress);
   const double bound = static_cast<double>(progressive.deviation[position]);
-  const bool is_limited = source.choice.target.kind == TargetKind::Error;
-  if (!is_limited || lies_within(measured.original(source.mesh), fitted, bound, source.progress))
+  if (!source.by_error || lies_within(measured.original(source.mesh), fitted, bound, source.progress))
     level.mesh = std::move(fitted);
   return level;
 }
@@ -54,7 +54,8 @@ Result<std::vector<LeveledMesh>> make_levels(MeasuredScene& measured, const std:
     if (progress.is_cancelled()) return;
     const Progress part = progress.part(share);
     if (!plan.repeats(mesh, level))
-      meshes[mesh].levels[level] = make_level({simplified[mesh], plan.choices[level], mesh, part}, measured, fitter);
+      meshes[mesh].levels[level] =
+          make_level({simplified[mesh], plan.choices[level], mesh, plan.by_error, part}, measured, fitter);
     part.reach(1);
   });
   if (!progress.reach(1)) return cancelled();

@@ -8,6 +8,7 @@
 #include <lodestone/core/parallel.h>
 
 #include "pipeline/build_progress.h"
+#include "pipeline/level_plan.h"
 
 namespace lodestone::detail {
 namespace {
@@ -43,9 +44,8 @@ Result<SimplifyOptions> options_for(const Scene& scene, const SceneMesh& mesh, c
   options.weights.target_reach = mesh.target_reach;
   LODESTONE_TRY(options.importance, vertex_importance(mesh, build.importance));
   // Bounds of every record are for the stream, for levels by error, and for sharing faces among meshes.
-  const bool by_error = !build.targets.empty() && build.targets.back().kind == TargetKind::Error;
   const bool is_shared = scene.meshes().size() > 1 && build.scope == TargetScope::Scene;
-  if (!writes_streams(build) && !by_error && !is_shared) options.measure_step = 0;
+  if (!writes_streams(build) && !is_by_error(build) && !is_shared) options.measure_step = 0;
   return options;
 }
 

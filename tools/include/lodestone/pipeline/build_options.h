@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <lodestone/core/effort.h>
@@ -42,6 +43,8 @@ struct BuildOptions {
   int effort = kDefaultEffort;  ///< 1 … 9, see core/effort.h: of simplifying, of measuring bounds and of fitting levels
   /// The levels after the whole scene, all of one kind; they may come in any order.
   std::vector<LevelTarget> targets = ratio_targets(0.5, 4);
+  /// An error that no level goes beyond, where targets are of faces or epsilon: what stops first, stops.
+  std::optional<LevelTarget> limit;
   TargetScope scope = TargetScope::Scene;  ///< whether meshes share what targets ask for
   /// Of every mesh alike. The build itself sets `effort`, `importance`, `stop`, `measure_step`, `progress` and
   /// the reach of morph targets.
