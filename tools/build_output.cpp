@@ -114,7 +114,7 @@ Json index_json(const BuildReport& report) {
                        {{"max", d.maximum()},
                         {"mean", std::max(d.forward.mean, d.backward.mean)},
                         {"rms", std::max(d.forward.rms, d.backward.rms)}}},
-                      {"error_threshold", level.deviation_bound},
+                      {"error_threshold", std::min(level.deviation_bound, d.maximum_bound())},
                       {"screen_coverage", coverages[i]}});
   }
   return {{"schema_version", kIndexSchemaVersion},

@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include <lodestone/lod/cursor.h>
@@ -59,6 +58,12 @@ std::function<double(Index)> error_meter(MeasuredScene& measured, const Simplify
   };
 }
 
+/// A stream alone has levels as it bounds them.
+int probe_count(const BuildOptions& options) {
+  if (options.effort < 5 || options.layout == FileLayout::StreamAlone) return 0;
+  return options.effort < 8 ? 2 : 4;
+}
+
 /// What they hold looks at the scene, the streams and the options.
 std::vector<ScenePart> parts_of(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
                                 const BuildOptions& options, SceneFitter& fitter, const Progress& progress) {
@@ -70,23 +75,10 @@ std::vector<ScenePart> parts_of(MeasuredScene& measured, const std::vector<Simpl
     parts.push_back({&simplified[i].mesh, mesh.scale, mesh.instance_count, simplified[i].stop_reason,
                      importance_of(mesh, options.importance),
                      world_charges(simplified[i], options.simplify.metric, mesh.scale),
-                     error_meter(measured, simplified[i], i, fitter, progress), kBoxGrowth * displacements[i]});
+                     error_meter(measured, simplified[i], i, fitter, progress), probe_count(options),
+                     kBoxGrowth * displacements[i]});
   }
   return parts;
-}
-
-/// Takes a choice back to where the limit is kept, as it then answers that.
-void keep_within(const SceneChoice& limit, SceneChoice& choice) {
-  bool is_beyond = false;
-  for (std::size_t i = 0; i < choice.positions.size(); ++i) {
-    is_beyond = is_beyond || choice.positions[i] < limit.positions[i];
-    choice.positions[i] = std::max(choice.positions[i], limit.positions[i]);
-  }
-  if (!is_beyond) return;
-  choice.target = limit.target;
-  choice.met = limit.met;
-  choice.stopped_by = limit.stopped_by;
-  choice.beyond.clear();
 }
 
 SceneChoice whole_scene(const std::vector<SimplifyResult>& simplified) {
@@ -112,12 +104,10 @@ LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>
   const Scene& scene = measured.scene();
   const std::vector<ScenePart> parts = parts_of(measured, simplified, options, fitter, progress);
   LevelPlan plan{{whole_scene(simplified)}, {}, 0, is_by_error(options)};
-  std::optional<SceneChoice> limit;
-  if (options.limit) limit = choose_positions(parts, *options.limit, options.scope, scene.box().diagonal());
   for (const ScenePart& part : parts) plan.grid_error = std::max(plan.grid_error, part.displacement * part.scale);
   for (const LevelTarget& target : options.targets) {
     SceneChoice choice = choose_positions(parts, target, options.scope, scene.box().diagonal());
-    if (limit) keep_within(*limit, choice);
+    if (options.limit) keep_within(parts, *options.limit, options.scope, scene.box().diagonal(), choice);
     const std::vector<Index>& before = plan.choices.back().positions;
     for (std::size_t i = 0; i < before.size() && !choice.met; ++i)
       choice.positions[i] = std::min(choice.positions[i], before[i]);

@@ -208,18 +208,57 @@ SceneChoice share_faces(std::span<const ScenePart> parts, const LevelTarget& tar
   return choice;
 }
 
-/// Answers a target that is relative to the part itself; errors are world units.
-LevelChoice choose_for_part(const ScenePart& part, const LevelTarget& target) {
+/// The absolute target, in mesh units, that one comes to for a part; relative ones are to the part itself.
+LevelTarget target_of_part(const ScenePart& part, const LevelTarget& target) {
   FullSize full;
   if (target.relative && target.kind == TargetKind::Faces) full.face_count = face_counts(*part.mesh).back();
   if (target.relative && target.kind == TargetKind::Error) full.diagonal = diagonal_of(*part.mesh);
   LevelTarget absolute = resolve(target, full);
+  if (target.kind == TargetKind::Error && !target.relative) absolute.value /= part.scale;
+  return absolute;
+}
+
+/// The coarsest whole position of at most so many faces.
+Index position_of(const ProgressiveMesh& mesh, std::span<const Index> faces, double most) {
+  const auto beyond = std::upper_bound(faces.begin() + 1, faces.end(), static_cast<Index>(most));
+  auto position = static_cast<Index>(beyond - faces.begin() - 1);
+  while (position > 0 && !is_whole(mesh, position)) --position;
+  return position;
+}
+
+/// Goes on from where bounds end to where what is measured does: errors grow about as faces get fewer, so that the
+/// first guess is near, and the next lie between what kept to the error and what did not.
+Index go_on_measuring(const ScenePart& part, Index position, double error) {
+  constexpr double kNearEnough = 0.95;
+  const std::vector<Index> faces = face_counts(*part.mesh);
+  const auto size = [&](Index at) { return static_cast<double>(faces[at]); };
+  Index good = position, bad = 0;
+  double reached = error > 0 && part.probe_count > 0 ? part.measure(good) : error;
+  for (int i = 0; i < part.probe_count && good > 0 && reached > 0 && reached < kNearEnough * error; ++i) {
+    const double guess = std::max(size(good) * std::max(reached / error, 0.5), std::sqrt(size(bad) * size(good)));
+    const Index next = position_of(*part.mesh, faces, guess);
+    if (next >= good || next <= bad) break;
+    const double measured = part.measure(next);
+    if (measured > error) {
+      bad = next;
+    } else {
+      good = next;
+      reached = measured;
+    }
+  }
+  return good;
+}
+
+/// Answers a target that is relative to the part itself; errors are world units.
+LevelChoice choose_for_part(const ScenePart& part, const LevelTarget& target) {
+  LevelTarget absolute = target_of_part(part, target);
   if (target.kind != TargetKind::Error) return choose_level(*part.mesh, absolute, part.end);
-  if (!target.relative) absolute.value /= part.scale;
   if (absolute.value < part.displacement)
     return {absolute, static_cast<Index>(part.mesh->record_count()), false, std::string(name_of(target.kind))};
   absolute.value -= part.displacement;
-  return choose_level(*part.mesh, absolute, part.end);
+  LevelChoice choice = choose_level(*part.mesh, absolute, part.end);
+  if (part.measure) choice.position = go_on_measuring(part, choice.position, absolute.value);
+  return choice;
 }
 
 SceneChoice choose_each(std::span<const ScenePart> parts, const LevelTarget& target) {
@@ -251,6 +290,24 @@ SceneChoice choose_faces_of_each(std::span<const ScenePart> parts, const LevelTa
 }
 
 }  // namespace
+
+void keep_within(std::span<const ScenePart> parts, const LevelTarget& limit, TargetScope scope, double diagonal,
+                 SceneChoice& choice) {
+  const LevelTarget target = scope == TargetScope::Mesh ? limit : resolve(limit, {0, diagonal});
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const ScenePart& part = parts[i];
+    Index& position = choice.positions[i];
+    const double error = target_of_part(part, target).value - part.displacement;
+    if (part.mesh->deviation[position] <= error || (part.measure && part.measure(position) <= error)) continue;
+    const LevelChoice within = choose_for_part(part, target);
+    if (within.position <= position) continue;
+    position = within.position;
+    choice.target = target;
+    choice.met = within.met;
+    choice.stopped_by = within.stopped_by;
+    choice.beyond.clear();
+  }
+}
 
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal) {

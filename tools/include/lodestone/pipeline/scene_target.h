@@ -26,6 +26,8 @@ struct ScenePart {
   /// Returns what a level at a position really deviates by, in mesh units, where bounds say that it is too much; empty:
   /// bounds are believed.
   std::function<double(Index)> measure;
+  /// How often `measure` may be asked, at most, whether a level by error can be coarser than bounds say.
+  int probe_count = 0;
   double displacement = 0;  ///< how far a file moves its vertices beyond the stream's deviations, mesh units
 };
 
@@ -54,5 +56,10 @@ struct SceneChoice {
 /// scene's.
 SceneChoice choose_positions(std::span<const ScenePart> parts, const LevelTarget& target, TargetScope scope,
                              double diagonal);
+
+/// Takes a choice back to where it keeps to an error, if it does not, by bounds or as measured; it answers that then.
+/// Pre: `limit` is an error.
+void keep_within(std::span<const ScenePart> parts, const LevelTarget& limit, TargetScope scope, double diagonal,
+                 SceneChoice& choice);
 
 }  // namespace lodestone
