@@ -60,7 +60,7 @@ std::function<double(Index)> error_meter(MeasuredScene& measured, const Simplify
 
 /// A stream alone has levels as it bounds them.
 int probe_count(const BuildOptions& options) {
-  if (options.effort < 5 || options.layout == FileLayout::StreamAlone) return 0;
+  if (options.effort < 7 || options.layout == FileLayout::StreamAlone) return 0;
   return options.effort < 8 ? 2 : 4;
 }
 
