@@ -50,8 +50,12 @@ void FaceBoxes::Node::add(std::size_t child, const Vec3f& low_end, const Vec3f& 
 
 FaceBoxes::FaceBoxes(const Mesh& mesh) : mesh_(mesh) {
   if (mesh.face_count() == 0) return;
-  const std::size_t runs = (mesh.face_count() + kWidth - 1) / kWidth;
-  nodes_.reserve(runs / (kWidth - 1) + 24);
+  std::size_t node_count = 0, children = (mesh.face_count() + kWidth - 1) / kWidth;
+  do {
+    children = (children + kWidth - 1) / kWidth;
+    node_count += children;
+  } while (children > 1);
+  nodes_.reserve(node_count);
   add_runs();
   if (!is_together()) {
     sort_along_curve();
