@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "distance/morton_curve.h"
+#include "distance/tree_levels.h"
 #include "distance/triangle.h"
 #include "distance/wide_vectors.h"
 
@@ -50,23 +51,20 @@ void FaceBoxes::Node::add(std::size_t child, const Vec3f& low_end, const Vec3f& 
 
 FaceBoxes::FaceBoxes(const Mesh& mesh) : mesh_(mesh) {
   if (mesh.face_count() == 0) return;
-  std::size_t node_count = 0, children = (mesh.face_count() + kWidth - 1) / kWidth;
-  do {
-    children = (children + kWidth - 1) / kWidth;
-    node_count += children;
-  } while (children > 1);
-  nodes_.reserve(node_count);
-  add_runs();
+  TreeLevels levels = tree_levels((mesh.face_count() + kWidth - 1) / kWidth, kWidth);
+  level_begin_ = std::move(levels.begin);
+  nodes_.resize(levels.node_count);
+  fit_runs();
   if (!is_together()) {
     sort_along_curve();
-    add_runs();
+    std::fill(nodes_.begin(), nodes_.end(), Node());
+    fit_runs();
   }
-  add_levels();
+  fit_levels();
 }
 
-void FaceBoxes::add_runs() {
+void FaceBoxes::fit_runs() {
   constexpr std::size_t kFaces = kWidth * kWidth;
-  nodes_.assign((mesh_.face_count() + kFaces - 1) / kFaces, Node());
   for (std::size_t i = 0; i < mesh_.face_count(); ++i) {
     const auto [a, b, c] = triangle_of(mesh_, face_at(i));
     nodes_[i / kFaces].add(i / kWidth % kWidth, least(least(a, b), c), most(most(a, b), c));
@@ -101,26 +99,22 @@ void FaceBoxes::sort_along_curve() {
   order_.assign(keys.begin(), keys.end());
 }
 
-void FaceBoxes::add_levels() {
-  level_begin_.push_back(0);
-  for (std::size_t begin = 0; nodes_.size() - begin > 1;) {
-    const std::size_t end = nodes_.size();
-    level_begin_.push_back(end);
-    for (std::size_t i = begin; i < end; ++i) {
-      const Node below = nodes_[i];
-      if ((i - begin) % kWidth == 0) nodes_.emplace_back();
+void FaceBoxes::fit_levels() {
+  for (std::size_t level = 1; level < level_begin_.size(); ++level) {
+    const std::size_t below = level_begin_[level - 1], begin = level_begin_[level];
+    for (std::size_t i = 0; below + i < begin; ++i) {
+      const Node& child = nodes_[below + i];
       const auto of_all = [&](std::size_t axis) {
-        return std::pair{*std::min_element(below.low[axis].begin(), below.low[axis].end()),
-                         *std::max_element(below.high[axis].begin(), below.high[axis].end())};
+        return std::pair{*std::min_element(child.low[axis].begin(), child.low[axis].end()),
+                         *std::max_element(child.high[axis].begin(), child.high[axis].end())};
       };
       const auto [x, y, z] = std::array{of_all(0), of_all(1), of_all(2)};
-      nodes_.back().add((i - begin) % kWidth, {x.first, y.first, z.first}, {x.second, y.second, z.second});
+      nodes_[begin + i / kWidth].add(i % kWidth, {x.first, y.first, z.first}, {x.second, y.second, z.second});
     }
-    begin = end;
   }
 }
 
-FaceBoxes::Near FaceBoxes::nearest(const Vec3& p, Index hint) const {
+NearFace FaceBoxes::nearest(const Vec3& p, Index hint) const {
   Best best;
   if (hint != kNoIndex) look_at(p, hint, best);
   if (!nodes_.empty()) open(level_begin_.size() - 1, 0, p, best);

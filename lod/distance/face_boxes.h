@@ -9,6 +9,12 @@
 
 namespace lodestone::detail {
 
+/// A face, and how far it is.
+struct NearFace {
+  Index face = kNoIndex;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
 /// Boxes around runs of a mesh's faces, for a few thousand searches: they take a twentieth of the memory of a
 /// SurfaceIndex and of the time to make it. A search takes several times as long.
 class FaceBoxes {
@@ -17,13 +23,8 @@ class FaceBoxes {
   /// do not they are sorted along a curve. Cost: O(n), or O(n log n).
   explicit FaceBoxes(const Mesh& mesh);
 
-  /// A face, and how far it is.
-  struct Near {
-    Index face = kNoIndex;
-    double distance = std::numeric_limits<double>::infinity();
-  };
   /// Returns the nearest face to `p`; `hint` is one likely near it, or kNoIndex.
-  Near nearest(const Vec3& p, Index hint) const;
+  NearFace nearest(const Vec3& p, Index hint) const;
 
  private:
   static constexpr std::size_t kWidth = 8;  // Children of a node, and faces of a run.
@@ -44,8 +45,8 @@ class FaceBoxes {
   };
 
   static Distances squared_distances(const Node& node, const Vec3& p);
-  void add_runs();
-  void add_levels();
+  void fit_runs();
+  void fit_levels();
   bool is_together() const;
   void sort_along_curve();
   Index face_at(std::size_t place) const { return order_.empty() ? static_cast<Index>(place) : order_[place]; }
@@ -55,8 +56,8 @@ class FaceBoxes {
 
   const Mesh& mesh_;
   std::vector<Index> order_;              // The faces; empty where they stay as the mesh has them.
-  std::vector<Node> nodes_;               // Level by level from the runs up: child i of node n is 8·n + i.
   std::vector<std::size_t> level_begin_;  // The first node of each level.
+  std::vector<Node> nodes_;               // Level by level from the runs up: child i of node n is 8·n + i.
 };
 
 }  // namespace lodestone::detail

@@ -199,11 +199,11 @@ bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
 /// Only a point that may be the farthest of all needs the nearest face: for all others one that is near enough will do.
 PartCorner SupremumSearch::query(const Vec3& point, Index hint, Index from_face, Goal& goal) {
   if (hint != kNoIndex) {
-    const TargetSurface::Near found = to_.near(point, hint);
+    const NearFace found = to_.near(point, hint);
     if (found.distance <= goal.found) return {point, found.distance, found.face};
     hint = found.face;
   }
-  const TargetSurface::Near nearest = to_.nearest(point, hint);
+  const NearFace nearest = to_.nearest(point, hint);
   if (nearest.distance > largest_distance_) {
     assume(from_face, nearest.distance, goal);
     farthest_point_ = point;

@@ -24,6 +24,7 @@
 
 #include "distance/face_order.h"
 #include "distance/point_spread.h"
+#include "distance/tree_levels.h"
 #include "distance/triangle.h"
 #include "distance/wide_vectors.h"
 
@@ -483,14 +484,9 @@ std::vector<Index> SurfaceIndex::Impl::find_distinct(std::span<const Triangle> a
 }
 
 void SurfaceIndex::Impl::build_nodes() {
-  std::size_t node_count = 0;
-  for (std::size_t children = triangles.size();;) {
-    children = (children + kWidth - 1) / kWidth;
-    level_begin.push_back(node_count);
-    node_count += children;
-    if (children == 1) break;
-  }
-  nodes.resize(node_count);
+  detail::TreeLevels levels = detail::tree_levels(triangles.size(), kWidth);
+  level_begin = std::move(levels.begin);
+  nodes.resize(levels.node_count);
   std::size_t child_size = 1;
   for (std::size_t level = 1; level < level_begin.size(); ++level) child_size *= kWidth;
   build_node(level_begin.size() - 1, 0, child_size);

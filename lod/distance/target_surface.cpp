@@ -13,7 +13,7 @@ double TargetSurface::distance_to_face(const Vec3& p, Index face) const {
   return std::sqrt(look_at(p, face).squared_distance);
 }
 
-TargetSurface::Near TargetSurface::near(const Vec3& p, Index start) const {
+NearFace TargetSurface::near(const Vec3& p, Index start) const {
   Place place = look_at(p, start);
   while (step_across(p, place) || step_around(p, place)) {
   }
@@ -51,11 +51,10 @@ bool TargetSurface::step_around(const Vec3& p, Place& place) const {
   return any_face_around(opposite_, corner, [&](Index face) { return step_to(p, face, place); });
 }
 
-TargetSurface::Near TargetSurface::nearest(const Vec3& p, Index hint) {
+NearFace TargetSurface::nearest(const Vec3& p, Index hint) {
   if (given_ == nullptr) {
     if (!made_) made_.emplace(mesh_);
-    const FaceBoxes::Near found = made_->nearest(p, hint);
-    return {found.face, found.distance};
+    return made_->nearest(p, hint);
   }
   const SurfaceIndex::Hit hit = given_->nearest(p, std::numeric_limits<double>::infinity(), hint);
   return {hit.face, hit.distance};

@@ -13,12 +13,6 @@ namespace lodestone::detail {
 /// The surface that distances are measured to: by its neighbours where a face nearby is known, by a search elsewhere.
 class TargetSurface {
  public:
-  /// A face, and how far it is.
-  struct Near {
-    Index face = kNoIndex;
-    double distance = 0;
-  };
-
   /// `opposite` are the mesh's opposite_corners; `index` is the mesh's, too. All outlive the object.
   TargetSurface(const Mesh& mesh, std::span<const Index> opposite, const SurfaceIndex& index)
       : mesh_(mesh), opposite_(opposite), given_(&index) {}
@@ -28,9 +22,9 @@ class TargetSurface {
   double distance_to_face(const Vec3& p, Index face) const;
   /// Goes from face to face, from `start` on, over the edge or around the corner where a face's nearest point lies, for
   /// as long as the next one is nearer: mostly to the nearest where `start` lies near p.
-  Near near(const Vec3& p, Index start) const;
+  NearFace near(const Vec3& p, Index start) const;
   /// Returns the nearest face; `hint` is one likely near p, or kNoIndex.
-  Near nearest(const Vec3& p, Index hint);
+  NearFace nearest(const Vec3& p, Index hint);
 
  private:
   /// A face, and its nearest point.

@@ -128,15 +128,14 @@ bool OriginalGuard::lets_pass(const std::array<Corners, 2>& now, const std::arra
 
 /// Walks to the original's nearest point, and searches for it where none was known near there, or the one found is out
 /// of reach: that may lie on the way to a nearer one.
-OriginalGuard::Nearest OriginalGuard::nearest(const Vec3& point, Index near) const {
+NearFace OriginalGuard::nearest(const Vec3& point, Index near) const {
   if (near != kNoIndex) {
     const SurfaceWalk::Place place = walk_.nearest_from(point, near);
     const double distance = std::sqrt(place.on.squared_distance);
     if (distance <= reach_) return {place.face, distance};
     near = place.face;
   }
-  const FaceBoxes::Near found = boxes_.nearest(point, near);
-  return {found.face, found.distance};
+  return boxes_.nearest(point, near);
 }
 
 OriginalGuard::Standing::Standing(const Corners& c, Index face_near)
@@ -151,7 +150,7 @@ OriginalGuard::Standing OriginalGuard::look_at(const Corners& corners, Index nea
 }
 
 double OriginalGuard::visit(const Vec3& point, Standing& standing) const {
-  const Nearest found = nearest(point, standing.near);
+  const NearFace found = nearest(point, standing.near);
   standing.distance = std::max(standing.distance, found.distance);
   standing.near = found.face;
   return found.distance;

@@ -93,11 +93,6 @@ class OriginalGuard {
  private:
   static constexpr std::size_t kPointsOfFace = 8;  // at which the original near a face is looked up
 
-  struct Nearest {
-    Index face;
-    double distance;
-  };
-
   /// How a face stood to the original when it was last looked at.
   struct Standing {
     Standing() = default;
@@ -113,7 +108,7 @@ class OriginalGuard {
   Standing look_at(const Corners& corners, Index near) const;
   double visit(const Vec3& point, Standing& standing) const;
   Distances look_inside(Standing& standing) const;
-  Nearest nearest(const Vec3& point, Index near) const;
+  NearFace nearest(const Vec3& point, Index near) const;
   bool is_surely_fine(const Standing& last, const Corners& corners) const;
 
   const FaceBoxes& boxes_;

@@ -16,6 +16,7 @@
 namespace lodestone::test {
 namespace {
 
+using detail::NearFace;
 using detail::TargetSurface;
 
 constexpr std::size_t kPoints = 60;  // more than are scanned for before an index is made
@@ -54,7 +55,7 @@ TEST_CASE("the nearest face is as near as that of all, with an index or without,
       const double least = distance_to_all(p, mesh);
       const Index hint = random.below(2) == 0 ? kNoIndex : static_cast<Index>(random.below(mesh.face_count()));
       for (TargetSurface* surface : {&by_itself, &by_index}) {
-        const TargetSurface::Near found = surface->nearest(p, hint);
+        const NearFace found = surface->nearest(p, hint);
         CHECK(found.distance == Approx(least).epsilon(1e-9).margin(1e-12));
         CHECK(surface->distance_to_face(p, found.face) == found.distance);
       }
@@ -68,7 +69,7 @@ TEST_CASE("going from face to face never ends farther than it began, and says ho
     Random random(4);
     for (const Vec3& p : points_near(mesh, 2)) {
       const auto start = static_cast<Index>(random.below(mesh.face_count()));
-      const TargetSurface::Near found = surface.near(p, start);
+      const NearFace found = surface.near(p, start);
       CHECK(found.distance == surface.distance_to_face(p, found.face));
       CHECK(found.distance <= surface.distance_to_face(p, start));
     }
@@ -83,7 +84,7 @@ TEST_CASE("on a convex shape going from face to face finds the nearest from anyw
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < kPoints; ++i) {
     const Vec3 p = normalized(Vec3{random.signed_unit(), random.signed_unit(), random.signed_unit()}) * 1.2;
-    const TargetSurface::Near found = surface.near(p, static_cast<Index>(random.below(mesh.face_count())));
+    const NearFace found = surface.near(p, static_cast<Index>(random.below(mesh.face_count())));
     nearest += found.distance <= distance_to_all(p, mesh) + 1e-12 ? 1 : 0;
   }
   CHECK(nearest == kPoints);
