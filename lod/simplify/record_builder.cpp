@@ -25,7 +25,6 @@ RecordBuilder::RecordBuilder(const Mesh& mesh, const Connectivity& connectivity)
   std::sort(materials_.begin(), materials_.end());
   materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
   if (materials_.empty()) materials_.push_back(0);
-  for (ChunkedVector<Index>* begin : {&sector_begin_, &polygon_begin_, &face_begin_}) begin->push_back(0);
 }
 
 Index RecordBuilder::group_of(Index face) const {
@@ -40,11 +39,11 @@ void RecordBuilder::add(std::span<const RemovalRecord> copies, double curvature_
     for (const SectorPatch& sector : record.sectors) {
       center_.push_back(sector.center);
       shape_.push_back(sector.shape);
-      polygons_.append(sector.polygon);
+      polygons_.insert(polygons_.end(), sector.polygon.begin(), sector.polygon.end());
       polygon_begin_.push_back(static_cast<Index>(polygons_.size()));
-      faces_.append(sector.faces);
+      faces_.insert(faces_.end(), sector.faces.begin(), sector.faces.end());
       face_begin_.push_back(static_cast<Index>(faces_.size()));
-      triangles_.append(sector.triangles);
+      triangles_.insert(triangles_.end(), sector.triangles.begin(), sector.triangles.end());
     }
   }
   sector_begin_.push_back(static_cast<Index>(center_.size()));

@@ -1,13 +1,12 @@
 #pragma once
 
+#include <deque>
 #include <span>
 #include <vector>
 
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/removal.h>
 #include <lodestone/lod/progressive_mesh.h>
-
-#include "simplify/chunked_vector.h"
 
 namespace lodestone::detail {
 
@@ -39,18 +38,18 @@ class RecordBuilder {
   const Connectivity* connectivity_;
   std::vector<Index> materials_;  // of the groups, ascending
 
-  // In order of removal, with the numbers of the full mesh.
-  ChunkedVector<Index> vertex_;
-  ChunkedVector<float> curvature_error_;
+  // In order of removal, with the numbers of the full mesh; they grow without being copied.
+  std::deque<Index> vertex_;
+  std::deque<float> curvature_error_;
   std::vector<std::size_t> round_end_;
-  ChunkedVector<Index> sector_begin_;
-  ChunkedVector<Index> center_;
-  ChunkedVector<SectorShape> shape_;
-  ChunkedVector<Index> polygon_begin_;
-  ChunkedVector<Index> polygons_;
-  ChunkedVector<Index> face_begin_;
-  ChunkedVector<Index> faces_;
-  ChunkedVector<PolygonTriangle> triangles_;
+  std::deque<Index> sector_begin_{0};
+  std::deque<Index> center_;
+  std::deque<SectorShape> shape_;
+  std::deque<Index> polygon_begin_{0};
+  std::deque<Index> polygons_;
+  std::deque<Index> face_begin_{0};
+  std::deque<Index> faces_;
+  std::deque<PolygonTriangle> triangles_;
 };
 
 }  // namespace lodestone::detail
