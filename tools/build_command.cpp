@@ -1,7 +1,9 @@
 #include "build_command.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <string_view>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +25,7 @@ namespace {
 using detail::text;
 
 constexpr int kMaxLevelCount = 32, kMaxThreadCount = 1024;
+constexpr std::array<std::string_view, 3> kFormats = {"glb", "gltf", "lods"};
 constexpr const char* kFileGroup = "File";  // a heading of the help
 
 /// Places a file beside the output, in a folder that is made where it does not exist.
@@ -95,9 +98,7 @@ void BuildCommand::add_to(CLI::App& app) {
   files.add_to(
       app, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others; - for standard input",
       "The .glb or .gltf to write, or a .lods, the stream alone; a folder, for several inputs; - for standard output");
-  app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
-      ->check(CLI::IsMember({"glb", "gltf", "lods"}))
-      ->type_name("NAME");
+  add_format_option(app, format, kFormats);
   add_run_options(app);
   add_level_options(app);
   add_control_options(app);
@@ -119,9 +120,7 @@ void BuildCommand::add_to(CLI::App& app) {
 void SimplifyCommand::add_to(CLI::App& app) {
   files.add_to(app, "Scene or mesh file: glTF, GLB, OBJ, PLY, STL and others; - for standard input",
                "The .glb, .gltf, .obj or .ply to write; a folder, for several inputs; - for standard output");
-  app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
-      ->check(CLI::IsMember({"glb", "gltf", "obj", "ply"}))
-      ->type_name("NAME");
+  add_format_option(app, format, kLevelFormats);
   add_run_options(app);
   const char* group = "How far: one of these";
   targets.add_to(app, group, false, true);
@@ -209,7 +208,6 @@ void BuildCommand::add_metric_options(CLI::App& app) {
 }
 
 void BuildCommand::add_profile_options(CLI::App& app) {
-  const char* group = kFileGroup;
   app.add_option(
          "--profile", profile,
          "One file, levels by MSFT_lod (default); a file for each level and an index; or one file of a coarse "
@@ -217,13 +215,13 @@ void BuildCommand::add_profile_options(CLI::App& app) {
          "target) and a stream that refines it to the whole, together about as large as the whole mesh by Draco")
       ->check(CLI::IsMember({"msft-lod", "files", "stream"}))
       ->type_name("NAME")
-      ->group(group);
-  CLI::Option* none = app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(group);
+      ->group(kFileGroup);
+  CLI::Option* none = app.add_flag("--no-stream", no_stream, "Leave the removal stream out")->group(kFileGroup);
   app.add_flag("--lossless", lossless,
                "Keep the stream's numbers bit for bit, at two to four times its size, instead of rounding them as "
                "compressed levels do")
       ->excludes(none)
-      ->group(group);
+      ->group(kFileGroup);
   app.add_option(
          "--stream-coding", stream_coding,
          "How the stream's bits are coded: small, in the fewest bytes (default), or fast, decoded in two fifths of "
@@ -231,18 +229,17 @@ void BuildCommand::add_profile_options(CLI::App& app) {
       ->check(CLI::IsMember({"small", "fast"}))
       ->type_name("NAME")
       ->excludes(none)
-      ->group(group);
+      ->group(kFileGroup);
 }
 
 void BuildCommand::add_storage_options(CLI::App& app) {
-  const char* group = kFileGroup;
   app.add_option(
          "--placement", placement,
          "Where a level's vertices lie: fitted to the original (default; skinned and morphed meshes are left out), "
          "or a subset of its vertices, as in the stream")
       ->check(CLI::IsMember({"optimised", "subset"}))
       ->type_name("NAME")
-      ->group(group);
+      ->group(kFileGroup);
   CLI::Option* compress =
       app.add_option(
              "--compress", compression,
@@ -250,17 +247,17 @@ void BuildCommand::add_storage_options(CLI::App& app) {
              "or not at all, for viewers without a decoder")
           ->check(CLI::IsMember({"draco", "meshopt", "none"}))
           ->type_name("NAME")
-          ->group(group);
+          ->group(kFileGroup);
   app.add_flag_callback(
          "--no-draco", [this] { compression = "none"; }, "The same as --compress none")
       ->excludes(compress)
-      ->group(group);
+      ->group(kFileGroup);
   CLI::Option* bits =
       app.add_option("--qp", position_bits,
                      "Bits of a position (default 14, more where the shape needs them); of compact streams 8 to 16")
           ->check(CLI::Range(1, 30))
           ->type_name("BITS")
-          ->group(group);
+          ->group(kFileGroup);
   CLI::Option* step =
       app.add_option("--grid-step", grid_step,
                      "Round positions to multiples of this, in the meshes' own units, instead of a "
@@ -268,13 +265,13 @@ void BuildCommand::add_storage_options(CLI::App& app) {
           ->check(CLI::PositiveNumber)
           ->type_name("STEP")
           ->excludes(bits)
-          ->group(group);
+          ->group(kFileGroup);
   app.add_option("--grid-origin", grid_origin, "Where multiples of --grid-step count from (default 0,0,0)")
       ->expected(3)
       ->delimiter(',')
       ->type_name("X,Y,Z")
       ->needs(step)
-      ->group(group);
+      ->group(kFileGroup);
 }
 
 /// Returns a command for each input, its files named; makes the folders that they go into.

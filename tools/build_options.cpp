@@ -16,7 +16,6 @@
 #include "error_size.h"
 #include "file_words.h"
 #include "messages.h"
-#include "standard_streams.h"
 
 namespace lodestone::tool {
 namespace {
@@ -69,17 +68,13 @@ bool shows_one_level(const BuildCommand& options) { return options.profile == "s
 
 bool has_one_level(const BuildCommand& options) { return options.profile == "level"; }
 
-std::string output_extension(const BuildCommand& command) {
-  return is_standard_stream(command.output) ? command.format : extension_of(command.output);
-}
-
 bool writes_mesh_file(const BuildCommand& command) {
-  const std::string extension = output_extension(command);
+  const std::string extension = output_extension(command.output, command.format);
   return has_one_level(command) && (extension == "obj" || extension == "ply");
 }
 
 bool writes_stream_file(const BuildCommand& command) {
-  return !has_one_level(command) && output_extension(command) == "lods";
+  return !has_one_level(command) && output_extension(command.output, command.format) == "lods";
 }
 
 namespace {

@@ -20,9 +20,6 @@ bool shows_one_level(const BuildCommand& options);
 /// True for `simplify`: one level in the file, and nothing else.
 bool has_one_level(const BuildCommand& options);
 
-/// Returns the extension of what is written, without its dot, whether the output's name has it or `--format` says it.
-std::string output_extension(const BuildCommand& command);
-
 /// True where triangles alone are written, as a .obj or .ply.
 bool writes_mesh_file(const BuildCommand& command);
 

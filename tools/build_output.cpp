@@ -15,6 +15,7 @@
 
 #include "asset_files.h"
 #include "build_options.h"
+#include "file_words.h"
 #include "messages.h"
 #include "staged_file.h"
 #include "standard_streams.h"
@@ -51,15 +52,16 @@ Result<void> check_format(const BuildCommand& options) {
     return {};
   }
   const std::string extension = extension_of(options.output);
-  const bool is_own = has_one_level(options) ? writes_mesh_file(options) : extension == "lods";
-  if (extension == "glb" || extension == "gltf" || is_own) return {};
+  const bool is_known = has_one_level(options) ? is_level_format(extension)
+                                               : extension == "glb" || extension == "gltf" || extension == "lods";
+  if (is_known) return {};
   std::string hint;
   if (extension.empty())
     hint = ": write '" + options.output.string() + ".glb', or '" + options.output.string() + "/' for a folder";
   if (extension == "obj" || extension == "ply") hint = "; lodestone simplify writes one of that kind";
-  return fail(ErrorCode::InvalidArgument,
-              "-o: " + quoted(options.output) + " does not end in " +
-                  (has_one_level(options) ? ".glb, .gltf, .obj or .ply" : ".glb, .gltf or .lods") + hint);
+  return fail(ErrorCode::InvalidArgument, "-o: " + quoted(options.output) + " does not end in " +
+                                              (has_one_level(options) ? kLevelFormatNames : ".glb, .gltf or .lods") +
+                                              hint);
 }
 
 Result<void> check_path(const BuildCommand& options, const std::filesystem::path& path) {
@@ -151,7 +153,7 @@ Result<void> make_mesh_file(const BuildCommand& options, const Scene& scene, Bui
   const std::size_t last = report.build.levels.size() - 1;
   LODESTONE_TRY(const Mesh surface, level_surface(scene, report.build.decoded, last));
   EncodedAsset file;
-  LODESTONE_TRY(file.glb, write_mesh_bytes(surface, "level." + output_extension(options)));
+  LODESTONE_TRY(file.glb, write_mesh_bytes(surface, "level." + output_extension(options.output, options.format)));
   report.build.levels[last].bytes = file.layout.total_bytes = file.glb.size();
   report.build.files.assign(1, std::move(file));
   return {};

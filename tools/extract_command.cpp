@@ -1,7 +1,6 @@
 #include "extract_command.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -27,8 +26,6 @@ namespace {
 
 using detail::text;
 
-constexpr std::array kExtensions = {"glb", "gltf", "obj", "ply"};
-
 /// Where the level goes: a file and its format, an extension without its dot.
 struct Destination {
   std::filesystem::path path;
@@ -37,11 +34,9 @@ struct Destination {
 
 Result<Destination> check_destination_of(const FilePair& files, const std::string& format) {
   const bool is_stream = is_standard_stream(files.output);
-  const std::string extension = is_stream ? format : extension_of(files.output);
-  if (std::find(kExtensions.begin(), kExtensions.end(), extension) == kExtensions.end()) {
-    return fail(ErrorCode::InvalidArgument,
-                "-o: " + quoted(files.output) + " does not end in .glb, .gltf, .obj or .ply");
-  }
+  const std::string extension = output_extension(files.output, format);
+  if (!is_level_format(extension))
+    return fail(ErrorCode::InvalidArgument, text("-o: ", quoted(files.output), " does not end in ", kLevelFormatNames));
   if (is_stream && extension == "gltf")
     return fail(ErrorCode::InvalidArgument, "--format: a .gltf is several files, the standard output takes one");
   if (is_stream && extension != "obj" && standard_output_is_terminal())
@@ -199,9 +194,7 @@ Result<Outcome> extract_target(const ExtractCommand& options, const std::filesys
 void ExtractCommand::add_to(CLI::App& app) {
   files.add_to(app, "A .glb or .gltf that lodestone build wrote, with its streams, or a .lods; - for standard input",
                "The .glb, .gltf, .obj or .ply to write; - for standard output");
-  app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
-      ->check(CLI::IsMember({"glb", "gltf", "obj", "ply"}))
-      ->type_name("NAME");
+  add_format_option(app, format, kLevelFormats);
   const char* group = "Target: one of these";
   target.add_to(app, group, false, false);
   app.add_option("--level", level, "This level as it stands in the file, 0 the finest")->type_name("N")->group(group);

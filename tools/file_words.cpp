@@ -66,6 +66,20 @@ Result<void> check_pairs(const std::vector<FilePair>& pairs) {
 
 }  // namespace
 
+bool is_level_format(std::string_view extension) {
+  return std::find(kLevelFormats.begin(), kLevelFormats.end(), extension) != kLevelFormats.end();
+}
+
+void add_format_option(CLI::App& app, std::string& format, std::span<const std::string_view> names) {
+  app.add_option("--format", format, "What is written to a folder or to standard output (default glb)")
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+      ->type_name("NAME");
+}
+
+std::string output_extension(const std::filesystem::path& output, const std::string& format) {
+  return is_standard_stream(output) ? format : extension_of(output);
+}
+
 void FileWords::add_to(CLI::App& app, const char* input_help, const char* output_help) {
   app.add_option("FILES", positional, "The input, and the output where -o does not name it")->type_name("");
   app.add_option("-i,--input", inputs, input_help)->allow_extra_args(false)->type_name("IN");

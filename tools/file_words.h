@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <lodestone/core/result.h>
@@ -39,6 +42,17 @@ struct FileWords {
  private:
   Result<std::vector<std::filesystem::path>> take_output(std::filesystem::path& target) const;
 };
+
+/// What one level is written as, a scene or triangles alone: extensions without a dot, and as a sentence names them.
+inline constexpr std::array<std::string_view, 4> kLevelFormats = {"glb", "gltf", "obj", "ply"};
+inline constexpr const char* kLevelFormatNames = ".glb, .gltf, .obj or .ply";
+bool is_level_format(std::string_view extension);
+
+/// Adds --format, for what has no name of its own: one of `names`, extensions without a dot.
+void add_format_option(CLI::App& app, std::string& format, std::span<const std::string_view> names);
+
+/// Returns the extension of what is written, without its dot: the output's, or of the standard output `format`.
+std::string output_extension(const std::filesystem::path& output, const std::string& format);
 
 /// Returns what to make of `path` for the input of that name: the file itself, or inside it where it is a folder.
 std::filesystem::path place_in(const std::filesystem::path& path, const std::filesystem::path& input,

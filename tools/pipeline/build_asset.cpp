@@ -333,8 +333,7 @@ Result<void> check_options(const BuildOptions& options) {
   if (options.effort < kLeastEffort || options.effort > kMostEffort)
     return fail(ErrorCode::InvalidArgument,
                 text("effort is ", options.effort, ", not from ", kLeastEffort, " to ", kMostEffort));
-  const bool has_errors = !options.targets.empty() && options.targets.back().kind == TargetKind::Error;
-  if (options.limit && (options.limit->kind != TargetKind::Error || has_errors))
+  if (options.limit && (options.limit->kind != TargetKind::Error || has_error_targets(options)))
     return fail(ErrorCode::InvalidArgument, "a limit is an error, where targets are of faces or epsilon");
   if (options.layout == FileLayout::Refined && options.targets.size() > 1)
     return fail(ErrorCode::InvalidArgument,

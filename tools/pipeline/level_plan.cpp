@@ -90,9 +90,11 @@ SceneChoice whole_scene(const std::vector<SimplifyResult>& simplified) {
 
 }  // namespace
 
-bool is_by_error(const BuildOptions& options) {
-  return options.limit || (!options.targets.empty() && options.targets.back().kind == TargetKind::Error);
+bool has_error_targets(const BuildOptions& options) {
+  return !options.targets.empty() && options.targets.back().kind == TargetKind::Error;
 }
+
+bool is_by_error(const BuildOptions& options) { return options.limit || has_error_targets(options); }
 
 bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplified, std::size_t mesh,
               std::size_t level) {

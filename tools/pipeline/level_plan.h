@@ -35,6 +35,9 @@ bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplifi
 LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
                       const BuildOptions& options, SceneFitter& fitter, const Progress& progress);
 
+/// Whether targets are errors.
+bool has_error_targets(const BuildOptions& options);
+
 /// Whether levels keep to an error: their own, or one that limits them all.
 bool is_by_error(const BuildOptions& options);
 

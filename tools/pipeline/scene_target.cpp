@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <queue>
 
 #include "pipeline/error_leap.h"
@@ -218,14 +219,6 @@ LevelTarget target_of_part(const ScenePart& part, const LevelTarget& target) {
   return absolute;
 }
 
-/// The coarsest whole position of at most so many faces.
-Index position_of(const ProgressiveMesh& mesh, std::span<const Index> faces, double most) {
-  const auto beyond = std::upper_bound(faces.begin() + 1, faces.end(), static_cast<Index>(most));
-  auto position = static_cast<Index>(beyond - faces.begin() - 1);
-  while (position > 0 && !is_whole(mesh, position)) --position;
-  return position;
-}
-
 /// Goes on from where bounds end to where what is measured does: errors grow about as faces get fewer, so that the
 /// first guess is near, and the next lie between what kept to the error and what did not.
 Index go_on_measuring(const ScenePart& part, Index position, double error) {
@@ -236,7 +229,7 @@ Index go_on_measuring(const ScenePart& part, Index position, double error) {
   double reached = error > 0 && part.probe_count > 0 ? part.measure(good) : error;
   for (int i = 0; i < part.probe_count && good > 0 && reached > 0 && reached < kNearEnough * error; ++i) {
     const double guess = std::max(size(good) * std::max(reached / error, 0.5), std::sqrt(size(bad) * size(good)));
-    const Index next = position_of(*part.mesh, faces, guess);
+    const Index next = position_for_faces(*part.mesh, static_cast<std::uint64_t>(guess));
     if (next >= good || next <= bad) break;
     const double measured = part.measure(next);
     if (measured > error) {
