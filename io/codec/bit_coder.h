@@ -31,17 +31,7 @@ class BitCoder {
   bool is_fast() const { return is_fast_; }
 
   /// Codes a bit that is 1 with probability `one` / 65536, `one` in 1 … 65535.
-  int code(int bit, std::uint32_t one) {
-    const std::uint32_t range = high_ - low_;
-    const std::uint32_t middle = low_ + (range >> 16U) * one + (((range & 0xFFFFU) * one) >> 16U);
-    if (reading_) bit = code_ <= middle ? 1 : 0;
-    if (bit != 0)
-      high_ = middle;
-    else
-      low_ = middle + 1;
-    while (((low_ ^ high_) >> 24U) == 0) shift();
-    return bit;
-  }
+  int code(int bit, std::uint32_t one);
 
   /// Codes the low `count` bits of a value, both values of each as likely.
   std::uint32_t code_raw(std::uint32_t value, int count);
@@ -61,13 +51,9 @@ class BitCoder {
   bool goes_on() const { return listener_ == nullptr || listener_->step(); }
 
  private:
-  std::uint32_t code_even(std::uint32_t bit);
-  void shift() {
-    if (!reading_) output_.push_back(static_cast<std::byte>(high_ >> 24U));
-    low_ <<= 8U;
-    high_ = high_ << 8U | 255U;
-    if (reading_) code_ = code_ << 8U | next_byte();
-  }
+  friend class BitRun;
+
+  void put(std::uint32_t byte);
   std::uint32_t next_byte() {
     const std::size_t at = read_++;
     return at < input_.size() ? static_cast<std::uint32_t>(input_[at]) : 0;
@@ -83,5 +69,52 @@ class BitCoder {
   std::vector<std::byte> output_;
   WorkListener* listener_ = nullptr;
 };
+
+/// Codes bits one after the other, with what the coder is at hand in registers; the coder has it again when this ends,
+/// and codes nothing until then.
+class BitRun {
+ public:
+  explicit BitRun(BitCoder& coder)
+      : coder_(coder), low_(coder.low_), high_(coder.high_), code_(coder.code_), reading_(coder.reading_) {}
+  BitRun(const BitRun&) = delete;
+  BitRun& operator=(const BitRun&) = delete;
+  ~BitRun() {
+    coder_.low_ = low_;
+    coder_.high_ = high_;
+    coder_.code_ = code_;
+  }
+
+  /// As BitCoder::code.
+  int code(int bit, std::uint32_t one) {
+    return split(bit, static_cast<std::uint32_t>(std::uint64_t{high_ - low_} * one >> 16U));
+  }
+  /// Codes a bit both values of which are as likely.
+  int code_even(int bit) { return split(bit, (high_ - low_) >> 1U); }
+
+ private:
+  /// Nothing branches on the bit here: nobody can foretell it.
+  int split(int bit, std::uint32_t part) {
+    const std::uint32_t middle = low_ + part;
+    if (reading_) bit = code_ <= middle ? 1 : 0;
+    high_ = bit != 0 ? middle : high_;
+    low_ = bit != 0 ? low_ : middle + 1;
+    while (((low_ ^ high_) >> 24U) == 0) shift();
+    return bit;
+  }
+  void shift() {
+    if (reading_)
+      code_ = code_ << 8U | coder_.next_byte();
+    else
+      coder_.put(high_ >> 24U);
+    low_ <<= 8U;
+    high_ = high_ << 8U | 255U;
+  }
+
+  BitCoder& coder_;
+  std::uint32_t low_, high_, code_;
+  bool reading_;
+};
+
+inline int BitCoder::code(int bit, std::uint32_t one) { return BitRun(*this).code(bit, one); }
 
 }  // namespace lodestone::detail

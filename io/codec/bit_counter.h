@@ -28,8 +28,9 @@ class BitCounter {
     seen_ = static_cast<std::uint16_t>(seen_ + (seen_ < slowest ? 1 : 0));
   }
 
-  /// Codes a bit by this alone.
-  int code(BitCoder& coder, int bit) {
+  /// Codes a bit by this alone. `coder`: a BitCoder or BitRun.
+  template <class Coder>
+  int code(Coder& coder, int bit) {
     bit = coder.code(bit, one_);
     add(bit != 0 ? 65535 : 0, kCounterRates.size() - 1);
     return bit;

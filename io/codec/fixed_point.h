@@ -11,16 +11,18 @@
 
 namespace lodestone::detail {
 
+// In functions they would be copied to the stack.
+inline constexpr std::array<std::uint8_t, 64> kLogs = {
+    0,  1,  1,  1,  2,  2,  2,  3,  3,  3,  4,  4,  4,  4,  5,  5,  5,  6,  6,  6,  6,  7,
+    7,  7,  7,  8,  8,  8,  9,  9,  9,  9,  9,  10, 10, 10, 10, 11, 11, 11, 11, 12, 12, 12,
+    12, 12, 13, 13, 13, 13, 13, 14, 14, 14, 14, 14, 15, 15, 15, 15, 15, 16, 16, 16};
+inline constexpr std::array<std::uint16_t, 16> kPowers = {4096, 4277, 4467, 4664, 4871, 5087, 5312, 5547,
+                                                          5793, 6049, 6317, 6597, 6889, 7194, 7512, 7845};
+
 /// Returns 16 · log2(x), rounded to about one unit; 0 for x = 0.
 constexpr int log2_16(std::uint64_t x) {
-  constexpr std::array<std::uint8_t, 64> kLog = {0,  1,  1,  1,  2,  2,  2,  3,  3,  3,  4,  4,  4,  4,  5,  5,
-                                                 5,  6,  6,  6,  6,  7,  7,  7,  7,  8,  8,  8,  9,  9,  9,  9,
-                                                 9,  10, 10, 10, 10, 11, 11, 11, 11, 12, 12, 12, 12, 12, 13, 13,
-                                                 13, 13, 13, 14, 14, 14, 14, 14, 15, 15, 15, 15, 15, 16, 16, 16};
-  if (x < 2) return 0;
-  const int top = 63 - std::countl_zero(x);
-  const auto mantissa = top >= 6 ? x >> (top - 6) : x << (6 - top);
-  return 16 * top + kLog[mantissa & 63U];
+  const int zeros = std::countl_zero(x | 1);
+  return 16 * (63 - zeros) + kLogs[x << zeros >> 57U & 63U];
 }
 
 /// Returns 16 · log2(|x| + 1), likewise.
@@ -28,10 +30,8 @@ inline int log_of(std::int64_t x) { return log2_16(static_cast<std::uint64_t>(st
 
 /// Returns 2^(x / 16), for x in 0 … 16 · 40, rounded down; 1 for less.
 constexpr std::int64_t exp2_16(int x) {
-  constexpr std::array<std::uint16_t, 16> kExp = {4096, 4277, 4467, 4664, 4871, 5087, 5312, 5547,
-                                                  5793, 6049, 6317, 6597, 6889, 7194, 7512, 7845};
   x = std::clamp(x, 0, 640);
-  return static_cast<std::int64_t>(std::uint64_t{kExp[x % 16]} << (x / 16) >> 12U);
+  return static_cast<std::int64_t>(std::uint64_t{kPowers[x % 16]} << (x / 16) >> 12U);
 }
 
 /// Returns the square root, rounded down. Floats only find where to look.

@@ -84,17 +84,21 @@ std::int64_t NumberCoder::code_counted(BitCoder& coder, std::int64_t number, con
   const int unit = std::clamp(static_cast<int>(std::bit_width(scale)) - kUnitBelow, 0, kMostStepBits - 1);
   BitCounter* const nodes = &counters_[(guess.kind * kScales + bucket(log2_16(scale), 16, 8, kScales)) * kNodes];
   const std::int64_t first = (guess.value + 15) >> 4;
-  const int side = nodes[0].code(coder, number >= first ? 1 : 0);
+  BitRun run(coder);
+  const int side = nodes[0].code(run, number >= first ? 1 : 0);
   const std::int64_t distance = side != 0 ? number - first : first - 1 - number;
   std::int64_t begin = 0;
   int bits = unit;
   for (std::uint32_t step = 1; bits < kMostStepBits; ++step) {
     const std::int64_t end = begin + (std::int64_t{1} << bits);
-    if (nodes[std::min(step, kNodes - 1)].code(coder, distance >= end ? 1 : 0) == 0) break;
+    if (nodes[std::min(step, kNodes - 1)].code(run, distance >= end ? 1 : 0) == 0) break;
     begin = end;
     if (step >= kEvenSteps) ++bits;
   }
-  begin += coder.code_raw(static_cast<std::uint32_t>(distance - begin), bits);
+  const auto rest = static_cast<std::uint32_t>(distance - begin);
+  std::uint32_t result = 0;
+  while (bits-- > 0) result = result << 1U | static_cast<std::uint32_t>(run.code_even(rest >> bits & 1U));
+  begin += result;
   return side != 0 ? first + begin : first - 1 - begin;
 }
 
