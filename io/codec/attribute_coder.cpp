@@ -169,7 +169,7 @@ bool AttributeCoder::code_base(BitCoder& coder, const PatchMesh& mesh, const Wed
   if (coders_.empty()) return true;
   look(mesh, wedges, positions);
   std::vector<Index> beside(wedges.size(), kNoIndex);  // by wedge: the last before it that shares a face
-  for (Index c = 0; c < mesh.corners().size(); ++c)
+  for (Index c = 0; c < 3 * mesh.face_count(); ++c)
     for (const Index other : {next_corner(c), previous_corner(c)}) {
       Index& best = beside[mesh.wedge(c)];
       if (mesh.wedge(other) < mesh.wedge(c) && (best == kNoIndex || best < mesh.wedge(other))) best = mesh.wedge(other);

@@ -86,9 +86,14 @@ void CompactDecoder::add_moves() {
     return move.star == kNoIndex ? mesh_.record_count() - 1
                                  : levels_.stars().stars[move.star].vertex - mesh_.base_vertex_count;
   };
-  std::vector<CodedMove> moves = levels_.moves();
-  std::stable_sort(moves.begin(), moves.end(),
-                   [&](const CodedMove& a, const CodedMove& b) { return record_of(a) < record_of(b); });
+  const auto comes_before = [&](const CodedMove& a, const CodedMove& b) { return record_of(a) < record_of(b); };
+  std::span<const CodedMove> moves = levels_.moves();
+  std::vector<CodedMove> sorted;
+  if (!std::is_sorted(moves.begin(), moves.end(), comes_before)) {  // where sheets meet
+    sorted.assign(moves.begin(), moves.end());
+    std::stable_sort(sorted.begin(), sorted.end(), comes_before);
+    moves = sorted;
+  }
   auto at = moves.begin();
   for (std::size_t record = first; record < mesh_.record_count(); ++record) {
     for (; at != moves.end() && record_of(*at) == record; ++at)
@@ -120,7 +125,8 @@ Result<void> CompactDecoder::add_values(BitCoder& coder) {
 
 void CompactDecoder::begin_mesh() {
   const PatchMesh& level = levels_.mesh();
-  for (Index w = 0; w < levels_.wedges().size(); ++w) mesh_.wedge_vertex.push_back(levels_.wedges().vertex(w));
+  const std::span<const Index> wedge_vertices = levels_.wedges().vertices();
+  mesh_.wedge_vertex.assign(wedge_vertices.begin(), wedge_vertices.end());
   mesh_.base_vertex_count = header_.base_vertex_count;
   mesh_.base_wedge_count = header_.base_wedge_count;
   for (const CompactGroup& group : header_.groups) mesh_.groups.push_back({group.material, 0, {}});
@@ -178,44 +184,50 @@ Result<void> CompactDecoder::read_base(BitCoder& coder) {
   return check_held_bytes(mesh_, most_bytes_);
 }
 
-/// Adds a sector but for its slots.
-void CompactDecoder::add_sector(std::size_t s) {
-  const SectorList& sectors = levels_.sectors();
-  const SectorList::Sector& sector = sectors.sectors[s];
-  const std::span<const Index> polygon = sectors.polygon(s);
-  mesh_.polygons.insert(mesh_.polygons.end(), polygon.begin(), polygon.end());
-  for (const auto& places : sectors.triangles_of(s))
-    mesh_.triangles.insert(mesh_.triangles.end(), places.begin(), places.end());
-  for (const Index face : sectors.coarse_of(s)) freed_.push_back(slots_[face]);
-  mesh_.sectors.push_back({static_cast<std::uint16_t>(polygon.size()), static_cast<std::uint16_t>(sector.group),
+/// Adds a sector but for its corners, triangles and slots.
+void CompactDecoder::add_sector(const SectorList::Sector& sector) {
+  const std::uint64_t end = polygon_base_ + sector.polygon_end;
+  mesh_.sectors.push_back({static_cast<std::uint16_t>(end - mesh_.polygon_begin.back()),
+                           static_cast<std::uint16_t>(sector.group),
                            static_cast<std::uint16_t>(sector.wedge - mesh_.record_wedge_begin.back()), sector.shape});
-  mesh_.polygon_begin.push_back(mesh_.polygons.size());
+  mesh_.polygon_begin.push_back(end);
 }
 
-/// Adds the record of the round's i-th vertex.
-void CompactDecoder::add_record(std::size_t i) {
+/// Adds the record with these sectors of the round, of the next vertex.
+void CompactDecoder::add_record(std::size_t begin, std::size_t end) {
   const SectorList& sectors = levels_.sectors();
-  const std::vector<Index>& ends = levels_.vertices().sector_end;
-  const Index begin = i == 0 ? 0 : ends[i - 1];
   const auto vertex = mesh_.base_vertex_count + static_cast<Index>(mesh_.record_count());
-  freed_.clear();
-  for (Index s = begin; s < ends[i]; ++s) add_sector(s);
-  mesh_.slots.insert(mesh_.slots.end(), freed_.begin(), freed_.end());
-  std::size_t at = 0;
-  for (Index s = begin; s < ends[i]; ++s) {
+  std::size_t freed = mesh_.slots.size();
+  for (std::size_t s = begin; s < end; ++s) {
+    add_sector(sectors.sectors[s]);
+    for (const Index face : sectors.coarse_of(s)) mesh_.slots.push_back(slots_[face]);
+  }
+  for (std::size_t s = begin; s < end; ++s) {
     const std::span<const Index> fine = sectors.fine_of(s);
     const std::size_t kept = sectors.coarse_of(s).size();
-    for (std::size_t k = 0; k < fine.size(); ++k) {
-      if (slots_.size() <= fine[k]) slots_.resize(fine[k] + 1);
-      slots_[fine[k]] = k < kept ? freed_[at++] : group_faces_[sectors.sectors[s].group]++;
-    }
+    Index& group_faces = group_faces_[sectors.sectors[s].group];
+    for (std::size_t k = 0; k < fine.size(); ++k) slots_[fine[k]] = k < kept ? mesh_.slots[freed++] : group_faces++;
   }
   mesh_.sector_begin.push_back(static_cast<Index>(mesh_.sectors.size()));
-  mesh_.wedge_vertex.resize(levels_.wedges().end(vertex), vertex);
-  mesh_.record_wedge_begin.push_back(static_cast<Index>(mesh_.wedge_vertex.size()));
+  mesh_.record_wedge_begin.push_back(levels_.wedges().end(vertex));
+}
+
+/// Adds the records of a round.
+void CompactDecoder::add_records() {
+  const SectorList& sectors = levels_.sectors();
+  const std::vector<Index>& ends = levels_.vertices().sector_end;
+  slots_.resize(levels_.mesh().face_count());
+  polygon_base_ = mesh_.polygons.size();
+  mesh_.polygons.insert(mesh_.polygons.end(), sectors.polygons.begin(), sectors.polygons.end());
+  for (const auto& places : sectors.triangles)
+    mesh_.triangles.insert(mesh_.triangles.end(), places.begin(), places.end());
+  for (std::size_t i = 0; i < ends.size(); ++i) add_record(i == 0 ? 0 : ends[i - 1], ends[i]);
+  const std::span<const Index> wedge_vertices = levels_.wedges().vertices();
+  mesh_.wedge_vertex.insert(mesh_.wedge_vertex.end(), wedge_vertices.begin() + mesh_.wedge_vertex.size(),
+                            wedge_vertices.end());
   // Up to its end, all of a round has the errors that it begins with, or that its stage does.
-  mesh_.deviation.push_back(header_.deviation.value(within_code_));
-  mesh_.curvature_error.push_back(mesh_.curvature_error.back());
+  mesh_.deviation.resize(mesh_.deviation.size() + ends.size(), header_.deviation.value(within_code_));
+  mesh_.curvature_error.resize(mesh_.curvature_error.size() + ends.size(), mesh_.curvature_error.back());
 }
 
 Result<void> CompactDecoder::read_round(BitCoder& coder) {
@@ -247,7 +259,7 @@ Result<void> CompactDecoder::read_round(BitCoder& coder) {
   if (header_.lossless && stage_ends_) return broken("lossless, it has placed levels");
   if (int step = 0; stage_ends_ && !levels_.code_step(coder, step)) return broken("its grid is too coarse");
   spend(coder, &CompactSizes::moves);
-  for (std::size_t i = 0; i < levels_.vertices().count(); ++i) add_record(i);
+  add_records();
   add_moves();
   mesh_.round_begin.push_back(static_cast<Index>(mesh_.record_count()));
   LODESTONE_CHECK(check_held_bytes(mesh_, most_bytes_));

@@ -52,8 +52,9 @@ class CompactDecoder {
   void add_moves();
   Result<void> add_values(BitCoder& coder);
   void begin_mesh();
-  void add_record(std::size_t i);
-  void add_sector(std::size_t s);
+  void add_records();
+  void add_record(std::size_t begin, std::size_t end);
+  void add_sector(const SectorList::Sector& sector);
 
   CompactHeader header_;
   std::size_t chunk_count_ = 0;
@@ -67,7 +68,7 @@ class CompactDecoder {
   bool stage_ends_ = false;         // with the round at hand
   std::vector<Index> slots_;        // by face of the level: in its group
   std::vector<Index> group_faces_;  // by group: of the level
-  std::vector<Index> freed_;        // slots of the coarse faces of a record
+  std::uint64_t polygon_base_ = 0;  // of the polygons of the round at hand
   ProgressiveMesh& mesh_;
   std::uint64_t most_bytes_;
   std::vector<CompactRound>* rounds_ = nullptr;  // counted, unless null

@@ -161,8 +161,8 @@ bool LevelCoder::code_places(BitCoder& coder, std::span<const Index> joins) {
   return true;
 }
 
+/// Ends a star whose faces are there.
 void LevelCoder::end_star(Index vertex, bool closed, bool is_loose) {
-  stars_.faces.insert(stars_.faces.end(), star_.begin(), star_.end());
   stars_.stars.push_back(
       {vertex, static_cast<Index>(stars_.faces.size()), static_cast<Index>(stars_.coarse.size()), closed, is_loose});
 }
@@ -177,9 +177,10 @@ void LevelCoder::add_stars() {
     first_star.push_back(i);
     return next++;
   };
+  mesh_.reserve(patches_.ears.size() + patches_.polygons.size() - patches_.faces.size());
   for (const Index half : patches_.ears) {
     const Index vertex = vertex_of_next();
-    mesh_.add_ear(half, vertex, round_number_, star_);
+    mesh_.add_ear(half, vertex, round_number_, stars_.faces);
     end_star(vertex, false, false);
   }
   std::span<const Index> polygons = patches_.polygons, faces = patches_.faces;
@@ -192,7 +193,7 @@ void LevelCoder::add_stars() {
       stars_.coarse.push_back({face, mesh_.group(face), {mesh_.wedge(c), mesh_.wedge(c + 1), mesh_.wedge(c + 2)}});
     }
     const Index vertex = vertex_of_next();
-    mesh_.refine(polygon, replaced, patch.closed, vertex, round_number_, star_);
+    mesh_.refine(polygon, replaced, patch.closed, vertex, round_number_, stars_.faces);
     end_star(vertex, patch.closed, false);
     polygon_begin = patch.polygon_end;
     face_begin = patch.face_end;
@@ -214,8 +215,42 @@ void LevelCoder::order_stars(std::span<const Index> first_star) {
   }
 }
 
+/// Adds the sector of a star that nothing cuts, with all coarse faces in it: most are of that kind. False where there
+/// is more to it.
+bool LevelCoder::add_whole(std::size_t i) {
+  const std::span<const Index> faces = stars_.star(i);
+  const std::span<const NewStars::Coarse> coarse = stars_.coarse_of(i);
+  if (!stars_.stars[i].closed || faces.size() != coarse.size() + 2 || faces.size() > kMostPatchCorners) return false;
+  const Index centre = mesh_.wedge(3 * faces.front()), group = mesh_.group(faces.front());
+  Index before = mesh_.wedge(3 * faces.back() + 2);
+  for (const Index face : faces) {
+    const Index c = 3 * face;
+    if (mesh_.wedge(c) != centre || mesh_.wedge(c + 1) != before || mesh_.group(face) != group) return false;
+    before = mesh_.wedge(c + 2);
+  }
+  places_.resize(wedges_.size());
+  const std::size_t begin = sectors_.polygons.size();
+  for (const Index face : faces) {
+    sectors_.polygons.push_back(mesh_.wedge(3 * face + 1));
+    sectors_.fine.push_back(face);
+  }
+  for (std::size_t k = faces.size(); k-- > 0;) places_[sectors_.polygons[begin + k]] = static_cast<std::uint16_t>(k);
+  for (const NewStars::Coarse& triangle : coarse) {
+    std::array<std::size_t, 3> places{};
+    bool fits = triangle.group == group;
+    for (std::size_t k = 0; k < 3; ++k) {
+      places[k] = places_[triangle.wedges[k]];
+      fits = fits && places[k] < faces.size() && sectors_.polygons[begin + places[k]] == triangle.wedges[k];
+    }
+    if (!fits || !sectors_.add_coarse(triangle.face, places)) return false;
+  }
+  sectors_.end_sector(SectorShape::Closed, group, centre);
+  return true;
+}
+
 /// Adds the sectors of a star.
 bool LevelCoder::split(std::size_t i) {
+  if (add_whole(i)) return true;
   const std::span<const Index> faces = stars_.star(i);
   split_.closed = stars_.stars[i].closed;
   split_.faces.clear();
@@ -223,7 +258,7 @@ bool LevelCoder::split(std::size_t i) {
   for (const Index face : faces)
     split_.faces.push_back(
         {face, mesh_.group(face), mesh_.wedge(3 * face), mesh_.wedge(3 * face + 1), mesh_.wedge(3 * face + 2)});
-  places_.resize(mesh_.vertex_count());
+  places_.resize(std::max(wedges_.size(), mesh_.vertex_count()));
   for (auto k = static_cast<Index>(faces.size()); k-- > 0;)
     places_[mesh_.from(3 * faces[k] + 1)] = static_cast<std::uint16_t>(k);
   const auto place_of = [&](Index wedge) {
@@ -297,10 +332,10 @@ bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
 }
 
 /// The middle of what a loose vertex's faces stand on; without any, where the vertex before it lies.
-Vec3i LevelCoder::guess_loose() const {
+Vec3i LevelCoder::guess_loose(std::span<const Index> fine) const {
   Vec3i sum;
   std::int64_t count = 0;
-  for (const Index face : star_)
+  for (const Index face : fine)
     for (Index c = 3 * face + 1; c < 3 * face + 3; ++c, ++count) sum = sum + positions_[mesh_.from(c)];
   if (count > 0) return divide(sum, count);
   return positions_.empty() ? Vec3i{} : positions_.back();
@@ -313,8 +348,9 @@ bool LevelCoder::code_loose_vertex(BitCoder& coder, LooseVertex& vertex) {
   if (!loose_coder_.code(coder, vertex.record, round_number_, corners_left(), mesh_, wedges_, sectors_)) return false;
   if (mesh_.face_count() > limits_.most_faces || wedges_.size() > limits_.most_wedges) return false;
   if (!code_extra(coder, vertex.extra) || !end_vertex()) return false;
-  star_.assign(sectors_.fine.begin() + static_cast<std::ptrdiff_t>(first_fine), sectors_.fine.end());
-  if (!shapes_->code_loose(coder, guess_loose(), vertex.position)) return false;
+  const auto fine = std::span(sectors_.fine).subspan(first_fine);
+  if (!shapes_->code_loose(coder, guess_loose(fine), vertex.position)) return false;
+  stars_.faces.insert(stars_.faces.end(), fine.begin(), fine.end());
   end_star(static_cast<Index>(positions_.size()), false, true);
   positions_.push_back(vertex.position);
   vertices_.stars.push_back(static_cast<Index>(stars_.stars.size() - 1));

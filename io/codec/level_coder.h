@@ -155,12 +155,13 @@ class LevelCoder {
   void add_stars();
   void end_star(Index vertex, bool closed, bool is_loose);
   void order_stars(std::span<const Index> first_star);
+  bool add_whole(std::size_t star);
   bool split(std::size_t star);
   bool end_vertex();
   bool code_extra(BitCoder& coder, Index count);
   bool code_flag(BitCoder& coder, std::uint32_t which, bool is);
   std::uint64_t corners_left() const;
-  Vec3i guess_loose() const;
+  Vec3i guess_loose(std::span<const Index> fine) const;
   bool move(BitCoder& coder, Index vertex, Index half, Index star, std::span<const Vec3i> targets);
 
   LevelLimits limits_;
@@ -189,9 +190,9 @@ class LevelCoder {
   NewVertices vertices_;
   SectorList sectors_;
   std::size_t vertices_done_ = 0;  // those of the round that have attributes
-  std::vector<Index> star_, joined_, vertex_faces_;
-  // By vertex: which corner it is of the ring that was looked at last, if it is one. Rings of more corners than this
-  // counts are refused.
+  std::vector<Index> joined_, vertex_faces_;
+  // By vertex, or by wedge: which corner it is of the ring that was looked at last, if it is one. Rings of more corners
+  // than this counts are refused.
   std::vector<std::uint16_t> places_;
   Star split_;
 };

@@ -11,27 +11,17 @@ constexpr std::size_t kMostHalves = 16;  // of an edge; of more, none are twins
 
 }  // namespace
 
-bool PatchMesh::is_seam(Index half) const {
-  const Index other = twin(half);
-  return other != kNoIndex && !fit(half, other);
-}
-
-/// Whether two half-edges in opposite directions have the same wedges and group.
-bool PatchMesh::fit(Index half, Index other) const {
-  return wedges_[half] == wedges_[next_corner(other)] && wedges_[next_corner(half)] == wedges_[other] &&
-         groups_[face_of_corner(half)] == groups_[face_of_corner(other)];
-}
-
-void PatchMesh::start(std::vector<Index> corners, std::vector<Index> wedges, std::vector<Index> groups,
+void PatchMesh::start(const std::vector<Index>& corners, std::vector<Index> wedges, std::vector<Index> groups,
                       std::size_t vertex_count) {
-  corners_ = std::move(corners);
+  face_count_ = groups.size();
+  halves_.clear();
+  for (const Index vertex : corners) halves_.push_back({vertex, kNoIndex});
   wedges_ = std::move(wedges);
   groups_ = std::move(groups);
-  twins_.assign(corners_.size(), kNoIndex);
   degree_.assign(vertex_count, 0);
-  made_in_.assign(face_count(), 0);
-  for (const Index vertex : corners_) ++degree_[vertex];
-  std::vector<Index> halves(corners_.size());
+  made_in_.assign(face_count_, 0);
+  for (const Index vertex : corners) ++degree_[vertex];
+  std::vector<Index> halves(corners.size());
   for (Index h = 0; h < halves.size(); ++h) halves[h] = h;
   join(halves);
 }
@@ -43,8 +33,8 @@ void PatchMesh::join(std::span<const Index> halves) {
   for (const Index h : halves) edges.emplace_back(from(h), to(h), h);
   sort_edges(edges);
   const auto pair_up = [&](const HalfEdge& a, const HalfEdge& b) {
-    twins_[a.corner] = b.corner;
-    twins_[b.corner] = a.corner;
+    halves_[a.corner].twin = b.corner;
+    halves_[b.corner].twin = a.corner;
   };
   const auto are_apart = [](const HalfEdge& a, const HalfEdge& b) {
     return face_of_corner(a.corner) != face_of_corner(b.corner);
@@ -68,80 +58,81 @@ void PatchMesh::join(std::span<const Index> halves) {
 }
 
 Index PatchMesh::part(Index half) {
-  const Index other = twins_[half];
-  if (other != kNoIndex) twins_[other] = kNoIndex;
-  twins_[half] = kNoIndex;
+  const Index other = twin(half);
+  if (other != kNoIndex) halves_[other].twin = kNoIndex;
+  halves_[half].twin = kNoIndex;
   return other;
 }
 
 void PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, Index vertex,
-                       std::uint32_t round, std::vector<Index>& star) {
+                       std::uint32_t round, std::vector<Index>& stars) {
   outer_.clear();
-  for (const Index half : polygon)
-    outer_.push_back(
-        {from(half), to(half), twin(half), wedge(half), wedge(next_corner(half)), group(face_of_corner(half))});
+  for (const Index half : polygon) {
+    const Index next = next_corner(half);
+    outer_.push_back({from(half), from(next), twin(half), wedge(half), wedge(next), group(face_of_corner(half))});
+  }
   for (const Index face : faces)
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[corners_[h]];
-  place_star(closed, faces, vertex, round, star);
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[from(h)];
+  place_star(closed, faces, vertex, round, stars);
 }
 
-void PatchMesh::add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& star) {
+void PatchMesh::add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& stars) {
   outer_.assign(1, {to(half), from(half), half, wedge(next_corner(half)), wedge(half), group(face_of_corner(half))});
-  place_star(false, {}, vertex, round, star);
+  place_star(false, {}, vertex, round, stars);
 }
 
 void PatchMesh::write_face(Index face, const std::array<Index, 3>& vertices, const std::array<Index, 3>& wedges,
                            Index group, std::uint32_t round) {
-  if (face == face_count()) {
-    append_faces(1);
+  if (face == face_count_) {
+    reserve(1);
+    ++face_count_;
   } else {
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[corners_[h]];
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[from(h)];
   }
   for (Index i = 0; i < 3; ++i) {
-    corners_[3 * face + i] = vertices[i];
+    halves_[3 * face + i] = {vertices[i], kNoIndex};
     wedges_[3 * face + i] = wedges[i];
-    twins_[3 * face + i] = kNoIndex;
     ++degree_[vertices[i]];
   }
   groups_[face] = group;
   made_in_[face] = round;
 }
 
-void PatchMesh::append_faces(std::size_t count) {
-  const std::size_t faces = face_count() + count;
-  corners_.resize(3 * faces);
+void PatchMesh::reserve(std::size_t more) {
+  const std::size_t faces = face_count_ + more;
+  if (faces <= groups_.size()) return;
+  halves_.resize(3 * faces);
   wedges_.resize(3 * faces);
-  twins_.resize(3 * faces);
   groups_.resize(faces);
   made_in_.resize(faces);
 }
 
 void PatchMesh::place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
-                           std::vector<Index>& star) {
-  const std::size_t count = outer_.size();
+                           std::vector<Index>& stars) {
+  const std::size_t count = outer_.size(), begin = stars.size();
   if (vertex == degree_.size()) add_vertex();
-  star.assign(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(std::min(count, faces.size())));
-  for (auto face = static_cast<Index>(face_count()); star.size() < count; ++face) star.push_back(face);
-  if (count > faces.size()) append_faces(count - faces.size());
+  const std::size_t kept = std::min(count, faces.size());
+  reserve(count - kept);
+  for (std::size_t i = 0; i < count; ++i) stars.push_back(i < kept ? faces[i] : static_cast<Index>(face_count_++));
+  const Index* const star = stars.data() + begin;
+  Index before = closed ? 3 * star[count - 1] + 2 : kNoIndex;  // the half-edge that ends in the vertex
   for (std::size_t i = 0; i < count; ++i) {
     const Index first = 3 * star[i];
     const Outer& outer = outer_[i];
-    corners_[first] = vertex;
-    corners_[first + 1] = outer.from;
-    corners_[first + 2] = outer.to;
+    halves_[first] = {vertex, before};
+    halves_[first + 1] = {outer.from, outer.twin};
+    halves_[first + 2] = {outer.to, i + 1 < count ? 3 * star[i + 1] : closed ? 3 * star[0] : kNoIndex};
     wedges_[first] = kNoIndex;
     wedges_[first + 1] = outer.from_wedge;
     wedges_[first + 2] = outer.to_wedge;
     groups_[star[i]] = outer.group;
-    twins_[first] = i > 0 ? 3 * star[i - 1] + 2 : closed ? 3 * star[count - 1] + 2 : kNoIndex;
-    twins_[first + 1] = outer.twin;
-    twins_[first + 2] = i + 1 < count ? 3 * star[i + 1] : closed ? 3 * star[0] : kNoIndex;
-    if (outer.twin != kNoIndex) twins_[outer.twin] = first + 1;
     made_in_[star[i]] = round;
-    ++degree_[vertex];
+    if (outer.twin != kNoIndex) halves_[outer.twin].twin = first + 1;
     ++degree_[outer.from];
     ++degree_[outer.to];
+    before = first + 2;
   }
+  degree_[vertex] += static_cast<Index>(count);
 }
 
 }  // namespace lodestone::detail

@@ -16,36 +16,40 @@ constexpr std::uint64_t ends_key(Index from, Index to) { return std::uint64_t{fr
 /// and the borders of groups do not cut the mesh. Half-edge 3f + i runs from corner i of face f to the next corner.
 class PatchMesh {
  public:
-  std::size_t face_count() const { return corners_.size() / 3; }
+  std::size_t face_count() const { return face_count_; }
   std::size_t vertex_count() const { return degree_.size(); }
-  Index from(Index half) const { return corners_[half]; }
-  Index to(Index half) const { return corners_[next_corner(half)]; }
-  Index apex(Index half) const { return corners_[previous_corner(half)]; }
+  Index from(Index half) const { return halves_[half].from; }
+  Index to(Index half) const { return from(next_corner(half)); }
+  Index apex(Index half) const { return from(previous_corner(half)); }
   /// The half-edge the other way round, or kNoIndex at a border.
-  Index twin(Index half) const { return twins_[half]; }
+  Index twin(Index half) const { return halves_[half].twin; }
   /// How many faces a vertex has.
   Index degree(Index vertex) const { return degree_[vertex]; }
   /// In which round a face was made last.
   std::uint32_t made_in(Index face) const { return made_in_[face]; }
-  const std::vector<Index>& corners() const { return corners_; }
   Index wedge(Index corner) const { return wedges_[corner]; }
   Index group(Index face) const { return groups_[face]; }
   /// Whether wedges or groups differ on the sides of an edge; not at borders.
-  bool is_seam(Index half) const;
+  bool is_seam(Index half) const {
+    const Index other = twin(half);
+    return other != kNoIndex && !fit(half, other);
+  }
 
   /// Starts with base faces. Of the half-edges between two vertices those are twins that run in opposite directions
   /// between the same wedges in the same group, and then what is left, where that is one of each direction.
-  void start(std::vector<Index> corners, std::vector<Index> wedges, std::vector<Index> groups,
+  void start(const std::vector<Index>& corners, std::vector<Index> wedges, std::vector<Index> groups,
              std::size_t vertex_count);
 
+  /// Makes room for so many more faces: faster than face by face.
+  void reserve(std::size_t more);
   /// Replaces a patch by a star of a vertex, which is the next one or one that is there: `polygon` is its outer
   /// half-edges in order; those of an open patch begin behind the closing edge, which is not among them. `faces`: its
-  /// faces, as many as the star needs are appended. The star's faces go to `star`, the vertex first in each; they have
-  /// the wedges and groups of the faces that had their outer edges, and no wedge at the vertex.
+  /// faces, as many as the star needs are appended. The star's faces are added to `stars`, the vertex first in each;
+  /// they have the wedges and groups of the faces that had their outer edges, and no wedge at the vertex.
   void refine(std::span<const Index> polygon, std::span<const Index> faces, bool closed, Index vertex,
-              std::uint32_t round, std::vector<Index>& star);
+              std::uint32_t round, std::vector<Index>& stars);
   /// Puts a face with a vertex onto a border half-edge, with the wedges and the group of the face there.
-  void add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& star);
+  void add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& stars);
 
   void set_wedge(Index corner, Index wedge) { wedges_[corner] = wedge; }
   void set_group(Index face, Index group) { groups_[face] = group; }
@@ -64,20 +68,27 @@ class PatchMesh {
   std::uint32_t join_count() const { return join_count_; }
 
  private:
+  struct Half {
+    Index from, twin;
+  };
   struct Outer {
     Index from, to, twin, from_wedge, to_wedge, group;
   };
-  void append_faces(std::size_t count);
   void place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
-                  std::vector<Index>& star);
-  bool fit(Index half, Index other) const;
+                  std::vector<Index>& stars);
+  /// Whether two half-edges in opposite directions have the same wedges and group.
+  bool fit(Index half, Index other) const {
+    return wedges_[half] == wedges_[next_corner(other)] && wedges_[next_corner(half)] == wedges_[other] &&
+           groups_[face_of_corner(half)] == groups_[face_of_corner(other)];
+  }
 
-  std::vector<Index> corners_;
+  // There may be room for more faces than there are.
+  std::size_t face_count_ = 0;
+  std::vector<Half> halves_;
   std::vector<Index> wedges_;  // by corner
   std::vector<Index> groups_;  // by face
-  std::vector<Index> twins_;
-  std::vector<Index> degree_;
   std::vector<std::uint32_t> made_in_;
+  std::vector<Index> degree_;
   std::uint32_t join_count_ = 0;
   std::vector<Outer> outer_;
 };

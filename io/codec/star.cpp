@@ -122,7 +122,7 @@ class Splitter {
   }
 
   /// Adds a coarse face whose corners have these numbers in the polygon at the end.
-  bool add_coarse(const Run& run, std::size_t i, std::array<std::size_t, 3> numbers) {
+  bool add_coarse(const Run& run, std::size_t i, const std::array<std::size_t, 3>& numbers) {
     const Star::Coarse& triangle = star_.coarse[i];
     if (is_used_[i]) return false;
     is_used_[i] = true;
@@ -131,13 +131,8 @@ class Splitter {
     for (std::size_t k = 0; k < 3; ++k)
       if (begin + numbers[k] >= sectors_.polygons.size() || sectors_.polygons[begin + numbers[k]] != triangle.wedges[k])
         return false;
-    std::sort(numbers.begin(), numbers.end());
-    if (numbers[0] == numbers[1] || numbers[1] == numbers[2] || numbers[2] >= kMostPlaces) return false;
-    const auto narrow = [&](std::size_t k) { return static_cast<std::uint8_t>(numbers[k]); };
-    sectors_.coarse.push_back(triangle.face);
-    sectors_.triangles.push_back({narrow(0), narrow(1), narrow(2)});
     ++used_;
-    return true;
+    return sectors_.add_coarse(triangle.face, numbers);
   }
 
   bool end(const Run& run, SectorShape shape) {
@@ -154,16 +149,12 @@ class Splitter {
     }
     for (const Star::Coarse& triangle : star_.coarse) {
       if (triangle.group != faces.front().group) return false;
-      std::array<Index, 3> places = triangle.places;
-      for (std::size_t k = 0; k < 3; ++k)
+      std::array<std::size_t, 3> places{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        places[k] = triangle.places[k];
         if (places[k] >= faces.size() || faces[places[k]].from != triangle.wedges[k]) return false;
-      if (places[0] > places[1]) std::swap(places[0], places[1]);
-      if (places[1] > places[2]) std::swap(places[1], places[2]);
-      if (places[0] > places[1]) std::swap(places[0], places[1]);
-      if (places[0] == places[1] || places[1] == places[2]) return false;
-      const auto narrow = [&](std::size_t k) { return static_cast<std::uint8_t>(places[k]); };
-      sectors_.coarse.push_back(triangle.face);
-      sectors_.triangles.push_back({narrow(0), narrow(1), narrow(2)});
+      }
+      if (!sectors_.add_coarse(triangle.face, places)) return false;
     }
     return star_.coarse.size() + 2 == ring_size_ && end({0, faces.size()}, SectorShape::Closed);
   }
@@ -246,6 +237,17 @@ std::span<const std::array<std::uint8_t, 3>> SectorList::triangles_of(std::size_
 }
 std::span<const Index> SectorList::fine_of(std::size_t s) const {
   return part_of(fine, s == 0 ? 0 : sectors[s - 1].fine_end, sectors[s].fine_end);
+}
+
+bool SectorList::add_coarse(Index face, std::array<std::size_t, 3> places) {
+  if (places[0] > places[1]) std::swap(places[0], places[1]);
+  if (places[1] > places[2]) std::swap(places[1], places[2]);
+  if (places[0] > places[1]) std::swap(places[0], places[1]);
+  if (places[0] == places[1] || places[1] == places[2] || places[2] >= kMostPlaces) return false;
+  const auto narrow = [&](std::size_t k) { return static_cast<std::uint8_t>(places[k]); };
+  coarse.push_back(face);
+  triangles.push_back({narrow(0), narrow(1), narrow(2)});
+  return true;
 }
 
 void SectorList::end_sector(SectorShape shape, Index group, Index wedge) {

@@ -31,6 +31,8 @@ struct SectorList {
   std::span<const Index> coarse_of(std::size_t sector) const;
   std::span<const std::array<std::uint8_t, 3>> triangles_of(std::size_t sector) const;
   std::span<const Index> fine_of(std::size_t sector) const;
+  /// Adds a face that is replaced, by its corners' places in the polygon. False where they are no three.
+  bool add_coarse(Index face, std::array<std::size_t, 3> places);
   /// Ends a sector: it has what has been added since the one before.
   void end_sector(SectorShape shape, Index group, Index wedge);
 };

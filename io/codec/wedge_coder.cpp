@@ -56,14 +56,14 @@ void WedgeCoder::foretell(const PatchMesh& mesh, bool has_seams, std::span<const
                           Index used) {
   const std::size_t count = star.size();
   std::uint32_t cuts = 0, outers = 0;
-  foretold_.centres.assign(count, used);
+  foretold_.centres.clear();
   for (std::size_t i = 0; i < count && has_seams; ++i) {
     const bool is_cut = (i > 0 || closed) && cut_between(mesh, star[i > 0 ? i - 1 : count - 1], star[i]) == 2;
     cuts += is_cut ? 1 : 0;
-    if (i > 0) foretold_.centres[i] = foretold_.centres[i - 1] + (is_cut ? 1 : 0);
+    foretold_.centres.push_back(i > 0 ? foretold_.centres[i - 1] + (is_cut ? 1 : 0) : used);
     outers += mesh.is_seam(3 * star[i] + 1) ? 1 : 0;
   }
-  if (closed && cuts < 2) foretold_.centres.assign(count, used);
+  if (!has_seams || (closed && cuts < 2)) foretold_.centres.assign(count, used);
   if (closed && cuts >= 2 && cut_between(mesh, star[count - 1], star[0]) != 2)
     for (std::size_t i = count, last = foretold_.centres[count - 1]; i-- > 0 && foretold_.centres[i] == last;)
       foretold_.centres[i] = used;
@@ -87,7 +87,7 @@ bool WedgeCoder::code_named(BitCoder& coder, PatchMesh& mesh, Index face, const 
   if (group >= group_count_) return false;
   std::array<Index, 2> ends{};
   for (Index k = 0; k < 2; ++k) {
-    const Index vertex = mesh.corners()[3 * face + 1 + k], count = wedges.count(vertex);
+    const Index vertex = mesh.from(3 * face + 1 + k), count = wedges.count(vertex);
     if (count == 0) return false;
     const Index wanted = plan == nullptr ? 0 : (k == 0 ? plan->from : plan->to) - wedges.begin(vertex);
     const Index number = coder.code_raw(wanted, std::bit_width(count - 1));

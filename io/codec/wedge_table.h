@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <lodestone/core/ids.h>
@@ -12,6 +13,7 @@ class WedgeTable {
   std::size_t size() const { return vertex_.size(); }
   std::size_t vertex_count() const { return begin_.size(); }
   Index vertex(Index wedge) const { return vertex_[wedge]; }
+  std::span<const Index> vertices() const { return vertex_; }
   Index begin(Index vertex) const { return begin_[vertex]; }
   Index end(Index vertex) const {
     return vertex + 1 < begin_.size() ? begin_[vertex + 1] : static_cast<Index>(vertex_.size());
