@@ -219,8 +219,9 @@ void CompactDecoder::add_records() {
   slots_.resize(levels_.mesh().face_count());
   polygon_base_ = mesh_.polygons.size();
   mesh_.polygons.insert(mesh_.polygons.end(), sectors.polygons.begin(), sectors.polygons.end());
-  for (const auto& places : sectors.triangles)
-    mesh_.triangles.insert(mesh_.triangles.end(), places.begin(), places.end());
+  static_assert(sizeof(sectors.triangles[0]) == 3);
+  const auto* const places = reinterpret_cast<const std::uint8_t*>(sectors.triangles.data());
+  mesh_.triangles.insert(mesh_.triangles.end(), places, places + 3 * sectors.triangles.size());
   for (std::size_t i = 0; i < ends.size(); ++i) add_record(i == 0 ? 0 : ends[i - 1], ends[i]);
   const std::span<const Index> wedge_vertices = levels_.wedges().vertices();
   mesh_.wedge_vertex.insert(mesh_.wedge_vertex.end(), wedge_vertices.begin() + mesh_.wedge_vertex.size(),

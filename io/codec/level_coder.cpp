@@ -83,7 +83,7 @@ bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std
   if (!shapes_->code_move(coder, mesh_, vertex, half, positions_, to)) return false;
   if (!(to == positions_[vertex])) {
     moves_.push_back({star, vertex, positions_[vertex], to});
-    patch_coder_.note_move(vertex);
+    patch_coder_.note_move(mesh_, vertex, half);
   }
   positions_[vertex] = to;
   moved_[vertex] = 1;
@@ -133,6 +133,9 @@ bool LevelCoder::code_stage_end(BitCoder& coder, bool& ends, std::span<const Vec
 }
 
 bool LevelCoder::code_patches(BitCoder& coder, const PatchPlan* plan) {
+  has_seams_ = limits_.group_count > 1 || wedges_.size() > wedges_.vertex_count();
+  const bool is_round =
+      patch_coder_.code(coder, mesh_, has_seams_, positions_, ++round_number_, stars_.faces, plan, patches_);
   vertices_done_ = 0;
   stars_.stars.clear();
   stars_.faces.clear();
@@ -141,8 +144,7 @@ bool LevelCoder::code_patches(BitCoder& coder, const PatchPlan* plan) {
   vertices_.star_end.clear();
   vertices_.sector_end.clear();
   sectors_.clear();
-  has_seams_ = limits_.group_count > 1 || wedges_.size() > wedges_.vertex_count();
-  return patch_coder_.code(coder, mesh_, has_seams_, positions_, ++round_number_, plan, patches_);
+  return is_round;
 }
 
 bool LevelCoder::code_places(BitCoder& coder, std::span<const Index> joins) {

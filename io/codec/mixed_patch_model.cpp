@@ -170,7 +170,7 @@ bool MixedPatchModel::code_face(BitCoder& coder, const PatchWalk& walk, Index fa
       continue;
     }
     const Index beyond = face_of_corner(twin);
-    const std::uint8_t state = walk.state[beyond];
+    const std::uint32_t state = walk.state(beyond);
     plain += state == PatchWalk::kPlain ? 1 : 0;
     patched += state == PatchWalk::kPatch ? 1 : 0;
     ages += ages_[beyond];
@@ -243,28 +243,28 @@ void MixedPatchModel::decide(const PatchWalk& walk, Index face) {
   for (Index h = 3 * face; h < 3 * face + 3; ++h) {
     Around& vertex = around_[mesh_->from(h)];
     --vertex.open;
-    if (walk.state[face] == PatchWalk::kPatch) --vertex.degree;
+    if (walk.state(face) == PatchWalk::kPatch) --vertex.degree;
   }
 }
 
 void MixedPatchModel::change_polygon(const PatchWalk& walk) {
   Vec3i sum;
-  for (const Index h : walk.polygon) sum = sum + positions_[mesh_->from(h)];
+  for (const Index corner : walk.corners) sum = sum + positions_[corner];
   const auto count = static_cast<std::int64_t>(walk.polygon.size());
   centre_ = divide(sum * 16, count);
   radii_.clear();
   radius_logs_.clear();
   int logs = 0;
-  for (const Index h : walk.polygon) {
-    const Vec3i& radius = radii_.emplace_back(positions_[mesh_->from(h)] * 16 - centre_);
+  for (const Index corner : walk.corners) {
+    const Vec3i& radius = radii_.emplace_back(positions_[corner] * 16 - centre_);
     logs += radius_logs_.emplace_back(log2_16(squared(radius)));
   }
   mean_radius_log_ = logs / static_cast<int>(count);
 }
 
 void MixedPatchModel::end_polygon(const PatchWalk& walk) {
-  for (const Index half : walk.polygon) {
-    Around& corner = around_[mesh_->from(half)];
+  for (const Index vertex : walk.corners) {
+    Around& corner = around_[vertex];
     corner.degree += 2;
     ++corner.patches;
   }

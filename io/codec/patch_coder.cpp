@@ -22,40 +22,54 @@ enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 PatchCoder::PatchCoder(bool is_fast)
     : model_(PatchModel::make(is_fast)), borders_(std::array<std::uint32_t, 1>{kBorders}, 1) {}
 
-void PatchCoder::start(const PatchMesh& mesh, std::span<const Vec3i> positions, std::uint32_t round, bool has_seams) {
-  walk_.mesh = &mesh;
-  walk_.positions = positions;
-  walk_.round = round;
-  walk_.has_seams = has_seams;
-  const std::size_t face_count = mesh.face_count();
-  walk_.state.assign(face_count, PatchWalk::kOpen);
-  decided_.assign(3 * face_count, 0);
-  walk_.edge_logs.resize(3 * face_count);
-  find_changed();
-  for (const Index face : walk_.changed)
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-      const Index other = mesh.twin(h);
-      walk_.edge_logs[h] =
-          other < h ? walk_.edge_logs[other]
-                    : static_cast<std::int16_t>(log2_16(squared(positions[mesh.from(h)] - positions[mesh.to(h)])));
-    }
-  model_->start(walk_);
+void PatchCoder::note_move(const PatchMesh& mesh, Index vertex, Index half) {
+  if (half == kNoIndex) return;
+  const Index degree = mesh.degree(vertex);
+  Index found = 0, at = half;
+  do {
+    moved_.push_back(face_of_corner(at));
+    ++found;
+    at = mesh.twin(previous_corner(at));
+  } while (at != half && at != kNoIndex && found < degree);
+  if (at == kNoIndex)
+    for (at = mesh.twin(half); at != kNoIndex && found < degree; at = mesh.twin(next_corner(at)), ++found)
+      moved_.push_back(face_of_corner(at));
+  if (found < degree) scattered_.push_back(vertex);
 }
 
-/// Finds the faces that were made in the round before, or have a vertex that has moved, in ascending order.
-void PatchCoder::find_changed() {
-  std::vector<std::uint8_t> is_moved;
-  if (!moved_.empty()) is_moved.assign(mesh().vertex_count(), 0);
-  for (const Index vertex : moved_) is_moved[vertex] = 1;
-  moved_.clear();
-  const auto has_moved = [&](Index face) {
-    return is_moved[mesh().from(3 * face)] != 0 || is_moved[mesh().from(3 * face + 1)] != 0 ||
-           is_moved[mesh().from(3 * face + 2)] != 0;
-  };
+void PatchCoder::add_changed(Index face) {
+  if (walk_.states[face] == PatchWalk::kIsSeen) return;
+  walk_.states[face] = PatchWalk::kIsSeen;
+  walk_.changed.push_back(face);
+}
+
+/// Finds the faces that were made in the round before, or have a vertex that has moved, and marks them as seen. Pre:
+/// none is.
+void PatchCoder::find_changed(std::span<const Index> made) {
   walk_.changed.clear();
-  for (Index face = 0; face < mesh().face_count(); ++face)
-    if (mesh().made_in(face) + 1 == walk_.round || (!is_moved.empty() && has_moved(face)))
-      walk_.changed.push_back(face);
+  for (const Index face : made) add_changed(face);
+  for (const Index face : moved_) add_changed(face);
+  moved_.clear();
+  if (walk_.round > 1 && scattered_.empty()) return;
+  std::vector<std::uint8_t> is_moved(mesh().vertex_count(), walk_.round > 1 ? 0 : 1);
+  for (const Index vertex : scattered_) is_moved[vertex] = 1;
+  scattered_.clear();
+  for (Index h = 0; h < 3 * mesh().face_count(); ++h)
+    if (is_moved[mesh().from(h)] != 0) add_changed(face_of_corner(h));
+}
+
+/// Finds the edges' lengths of the faces that have changed. Those across which a face is as it was are known.
+void PatchCoder::find_edge_logs() {
+  walk_.edge_logs.resize(3 * mesh().face_count());
+  for (const Index face : walk_.changed) {
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+      const Index other = mesh().twin(h);
+      const bool is_known = other != kNoIndex && walk_.states[face_of_corner(other)] == PatchWalk::kOpen;
+      const auto edge = [&] { return walk_.positions[mesh().from(h)] - walk_.positions[mesh().to(h)]; };
+      walk_.edge_logs[h] = is_known ? walk_.edge_logs[other] : static_cast<std::int16_t>(log2_16(squared(edge())));
+    }
+    walk_.states[face] = PatchWalk::kOpen;  // known now
+  }
 }
 
 bool PatchCoder::code_border(BitCoder& coder, std::uint32_t what, bool yes) {
@@ -63,12 +77,25 @@ bool PatchCoder::code_border(BitCoder& coder, std::uint32_t what, bool yes) {
 }
 
 void PatchCoder::decide(Index face, PatchWalk::State state) {
-  walk_.state[face] = state;
+  walk_.states[face] |= state;
   model_->decide(walk_, face);
 }
 
+/// Decides that no patch goes on across a half-edge.
+void PatchCoder::close(Index half) {
+  const Index face = face_of_corner(half);
+  walk_.states[face] = static_cast<std::uint8_t>(walk_.states[face] | PatchWalk::kIsDecided << (half - 3 * face));
+}
+
+bool PatchCoder::is_closed(Index half) const {
+  const Index face = face_of_corner(half);
+  return (walk_.states[face] & PatchWalk::kIsDecided << (half - 3 * face)) != 0;
+}
+
 bool PatchCoder::has_corner(Index vertex) const {
-  return std::any_of(walk_.polygon.begin(), walk_.polygon.end(), [&](Index h) { return mesh().from(h) == vertex; });
+  for (const Index corner : walk_.corners)
+    if (corner == vertex) return true;
+  return false;
 }
 
 /// Lets the patch that begins with a face grow, edge by edge.
@@ -76,6 +103,7 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
   const Index patch = plan != nullptr ? plan->patch_of[seed] : 0;
   std::vector<Index>& polygon = walk_.polygon;
   polygon.assign({3 * seed, 3 * seed + 1, 3 * seed + 2});
+  walk_.corners.assign({mesh().from(3 * seed), mesh().from(3 * seed + 1), mesh().from(3 * seed + 2)});
   walk_.faces.assign(1, seed);
   decide(seed, PatchWalk::kPatch);
   walk_.lengths = 0;
@@ -88,17 +116,17 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
     if (twin == kNoIndex) {
       if (closing == kNoIndex && code_border(coder, kCloses, plan != nullptr && plan->closing_edge[patch] == half)) {
         closing = i;
-        decided_[half] = 1;
+        close(half);
       }
       ++i;
       continue;
     }
     const Index beyond = face_of_corner(twin);
     // Corners of a ring are different vertices, and edges are asked for once.
-    const bool may_go_on = walk_.state[beyond] == PatchWalk::kOpen && decided_[half] == 0 &&
+    const bool may_go_on = walk_.state(beyond) == PatchWalk::kOpen && !is_closed(half) &&
                            polygon.size() < kMostPatchCorners && !has_corner(mesh().apex(twin));
     if (!may_go_on || !model_->code_edge(coder, walk_, i, plan != nullptr && plan->patch_of[beyond] == patch)) {
-      decided_[twin] = 1;
+      close(twin);
       ++i;
       continue;
     }
@@ -115,7 +143,9 @@ void PatchCoder::go_on(std::size_t i) {
   walk_.faces.push_back(beyond);
   walk_.lengths += walk_.edge_logs[next_corner(twin)] + walk_.edge_logs[previous_corner(twin)] - walk_.edge_logs[half];
   walk_.polygon[i] = next_corner(twin);
-  walk_.polygon.insert(walk_.polygon.begin() + static_cast<std::ptrdiff_t>(i) + 1, previous_corner(twin));
+  const auto after = static_cast<std::ptrdiff_t>(i) + 1;
+  walk_.polygon.insert(walk_.polygon.begin() + after, previous_corner(twin));
+  walk_.corners.insert(walk_.corners.begin() + after, mesh().apex(twin));
   model_->change_polygon(walk_);
 }
 
@@ -134,21 +164,24 @@ void PatchCoder::end_patch(std::size_t closing, RoundPatches& patches) {
       {static_cast<Index>(patches.polygons.size()), static_cast<Index>(patches.faces.size()), closed});
 }
 
-/// Has the walk ask of the face beyond a half-edge.
+/// Has the walk ask of the face beyond a half-edge, if it does not yet.
 void PatchCoder::ask_beyond(Index half) {
   const Index twin = mesh().twin(half);
   if (twin == kNoIndex) return;
-  if (const Index face = face_of_corner(twin); walk_.state[face] == PatchWalk::kOpen) queue_.push_back(face);
+  const Index face = face_of_corner(twin);
+  if ((walk_.states[face] & (PatchWalk::kStateBits | PatchWalk::kIsSeen)) != 0) return;
+  walk_.states[face] |= PatchWalk::kIsSeen;
+  queue_.push_back(face);
 }
 
 void PatchCoder::walk(BitCoder& coder, const PatchPlan* plan, Index count, RoundPatches& patches) {
   const auto face_count = static_cast<Index>(mesh().face_count());
   for (Index first = 0; first < face_count && patches.patches.size() < count; ++first) {
-    if (walk_.state[first] != PatchWalk::kOpen) continue;
+    if (walk_.state(first) != PatchWalk::kOpen) continue;
     queue_.assign(1, first);
     for (std::size_t at = 0; at < queue_.size() && patches.patches.size() < count; ++at) {
       const Index face = queue_[at];
-      if (walk_.state[face] != PatchWalk::kOpen) continue;
+      if (walk_.state(face) != PatchWalk::kOpen) continue;
       if (!coder.goes_on()) return;
       if (model_->code_face(coder, walk_, face, plan != nullptr && plan->patch_of[face] != kNoIndex)) {
         grow(coder, face, plan, patches);
@@ -165,14 +198,21 @@ void PatchCoder::code_ears(BitCoder& coder, const PatchPlan* plan, RoundPatches&
   const auto half_count = static_cast<Index>(3 * mesh().face_count());
   const Index count = any ? coder.code_raw(plan != nullptr ? plan->ear_count : 0, std::bit_width(half_count)) : 0;
   for (Index h = 0; h < half_count && patches.ears.size() < count; ++h)
-    if (mesh().twin(h) == kNoIndex && decided_[h] == 0 &&
+    if (mesh().twin(h) == kNoIndex && !is_closed(h) &&
         code_border(coder, kIsEar, plan != nullptr && plan->is_ear[h] != 0))
       patches.ears.push_back(h);
 }
 
 bool PatchCoder::code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, std::span<const Vec3i> positions,
-                      std::uint32_t round, const PatchPlan* plan, RoundPatches& patches) {
-  start(mesh, positions, round, has_seams);
+                      std::uint32_t round, std::span<const Index> made, const PatchPlan* plan, RoundPatches& patches) {
+  walk_.mesh = &mesh;
+  walk_.positions = positions;
+  walk_.round = round;
+  walk_.has_seams = has_seams;
+  walk_.states.assign(mesh.face_count(), PatchWalk::kOpen);
+  find_changed(made);
+  find_edge_logs();
+  model_->start(walk_);
   patches.patches.clear();
   patches.polygons.clear();
   patches.faces.clear();

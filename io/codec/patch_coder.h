@@ -46,18 +46,21 @@ class PatchCoder {
  public:
   explicit PatchCoder(bool is_fast);
 
-  /// Notes that a vertex lies elsewhere than in the round before.
-  void note_move(Index vertex) { moved_.push_back(vertex); }
+  /// Notes that a vertex lies elsewhere than in the round before. `half`: a half-edge that leaves it; kNoIndex where none
+  /// does.
+  void note_move(const PatchMesh& mesh, Index vertex, Index half);
 
   /// Codes a round's patches; a reader passes no plan. Without seams none are looked for. False where what is read is
-  /// no round. Rounds are numbered from 1 on; what faces look like is remembered from one to the next.
+  /// no round. Rounds are numbered from 1 on; what faces look like is remembered from one to the next, but of those that
+  /// were `made` in the round before.
   bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, std::span<const Vec3i> positions,
-            std::uint32_t round, const PatchPlan* plan, RoundPatches& patches);
+            std::uint32_t round, std::span<const Index> made, const PatchPlan* plan, RoundPatches& patches);
 
  private:
   const PatchMesh& mesh() const { return *walk_.mesh; }
-  void start(const PatchMesh& mesh, std::span<const Vec3i> positions, std::uint32_t round, bool has_seams);
-  void find_changed();
+  void find_changed(std::span<const Index> made);
+  void add_changed(Index face);
+  void find_edge_logs();
   void walk(BitCoder& coder, const PatchPlan* plan, Index count, RoundPatches& patches);
   void grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundPatches& patches);
   void go_on(std::size_t i);
@@ -66,16 +69,18 @@ class PatchCoder {
   void code_ears(BitCoder& coder, const PatchPlan* plan, RoundPatches& patches);
   bool code_border(BitCoder& coder, std::uint32_t what, bool yes);
   void decide(Index face, PatchWalk::State state);
+  void close(Index half);
+  bool is_closed(Index half) const;
   bool has_corner(Index vertex) const;
 
   std::unique_ptr<PatchModel> model_;
   BitMixer borders_;
   NumberCoder counts_;
-  std::vector<Index> moved_;  // vertices, since the last round
+  std::vector<Index> moved_;      // faces of vertices that have moved since the last round
+  std::vector<Index> scattered_;  // such vertices whose faces do not all hang together
 
   // Of the round at hand.
   PatchWalk walk_;
-  std::vector<std::uint8_t> decided_;  // by half-edge: that no patch goes on across it
   std::vector<Index> queue_;
 };
 

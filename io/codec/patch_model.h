@@ -17,24 +17,28 @@ namespace lodestone::detail {
 /// A walk over the faces of a level: what it has decided, and the patch at hand.
 struct PatchWalk {
   enum State : std::uint8_t { kOpen, kPlain, kPatch };
+  // Besides, in a face's state: that it was seen, and that no patch goes on across its half-edges, from the first on.
+  static constexpr std::uint8_t kStateBits = 3, kIsSeen = 4, kIsDecided = 8;
 
   const PatchMesh* mesh = nullptr;
   std::span<const Vec3i> positions;
   std::uint32_t round = 0;
   bool has_seams = false;
   std::vector<Index> changed;           // faces that were made, or had a corner moved, since the round before
-  std::vector<std::uint8_t> state;      // by face
+  std::vector<std::uint8_t> states;     // by face
   std::vector<std::int16_t> edge_logs;  // by half-edge: of the length, squared
 
   std::vector<Index> polygon;  // half-edges around the patch
+  std::vector<Index> corners;  // the vertices that they leave
   std::vector<Index> faces;    // of the patch
   std::uint32_t crossed = 0;   // seams
   int lengths = 0;             // of the polygon's edges: logarithms
 
+  std::uint32_t state(Index face) const { return std::uint32_t{states[face]} & kStateBits; }
   /// Of the face beyond a half-edge; kPlain at a border.
   std::uint32_t state_of(Index half) const {
     const Index twin = mesh->twin(half);
-    return twin == kNoIndex ? std::uint32_t{kPlain} : state[face_of_corner(twin)];
+    return twin == kNoIndex ? std::uint32_t{kPlain} : state(face_of_corner(twin));
   }
   bool is_seam(Index half) const { return has_seams && mesh->is_seam(half); }
 };
