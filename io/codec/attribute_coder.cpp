@@ -157,7 +157,7 @@ bool AttributeCoder::code_wedge(BitCoder& coder, const ElementPlace& place,
   return coder.goes_on();
 }
 
-void AttributeCoder::look(const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions) {
+void AttributeCoder::look(const PatchMesh& mesh, const WedgeTable& wedges, const GridPoints& positions) {
   for (auto& element : coders_) element->resize(wedges.size());
   if (!has_directions_ || is_fast_) return;
   look_at_normals(
@@ -165,7 +165,7 @@ void AttributeCoder::look(const PatchMesh& mesh, const WedgeTable& wedges, std::
 }
 
 bool AttributeCoder::code_base(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges,
-                               std::span<const Vec3i> positions, std::span<const std::vector<std::int32_t>> given) {
+                               const GridPoints& positions, std::span<const std::vector<std::int32_t>> given) {
   if (coders_.empty()) return true;
   look(mesh, wedges, positions);
   std::vector<Index> beside(wedges.size(), kNoIndex);  // by wedge: the last before it that shares a face
@@ -211,7 +211,7 @@ void AttributeCoder::look_around(const PatchMesh& mesh, Index wedge, std::span<c
 }
 
 bool AttributeCoder::code_vertex(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges,
-                                 std::span<const Vec3i> positions, Index vertex, std::span<const Index> faces,
+                                 const GridPoints& positions, Index vertex, std::span<const Index> faces,
                                  std::span<const std::vector<std::int32_t>> given, Index first_given) {
   if (coders_.empty()) return true;
   const Index first = wedges.begin(vertex), end = wedges.end(vertex);

@@ -10,6 +10,7 @@
 #include "codec/bit_coder.h"
 #include "codec/bit_mixer.h"
 #include "codec/fixed_point.h"
+#include "codec/grid_points.h"
 #include "codec/number_coder.h"
 #include "codec/patch_mesh.h"
 #include "codec/wedge_table.h"
@@ -25,7 +26,7 @@ inline constexpr std::size_t kMostAround = 256;
 struct ElementPlace {
   const PatchMesh& mesh;
   const WedgeTable& wedges;
-  std::span<const Vec3i> positions;
+  const GridPoints& positions;
   std::span<const Vec3i> normals;  ///< by wedge: unit; of the faces that have it, by area; none of a fast coder
   Index wedge = 0;
   std::span<const Index> faces;           ///< those that have the wedge as their first; in order, if it has a ring
@@ -36,7 +37,7 @@ struct ElementPlace {
 
   /// The edges of a face that leave its first corner.
   std::array<Vec3i, 2> edges(Index face) const {
-    const Vec3i& p = positions[mesh.from(3 * face)];
+    const Vec3i p = positions[mesh.from(3 * face)];
     return {positions[mesh.from(3 * face + 1)] - p, positions[mesh.from(3 * face + 2)] - p};
   }
   /// The sum of the faces' normals, by area.
@@ -102,12 +103,12 @@ class AttributeCoder {
   const ElementCoder& attribute(std::size_t i) const { return *coders_[i]; }
 
   /// Makes room for all wedges of a level, and looks at its faces.
-  void look(const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions);
+  void look(const PatchMesh& mesh, const WedgeTable& wedges, const GridPoints& positions);
   /// Codes all wedges of a base mesh. `given`: by attribute, their numbers, of a writer; a reader gives none.
-  bool code_base(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions,
+  bool code_base(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges, const GridPoints& positions,
                  std::span<const std::vector<std::int32_t>> given);
   /// Codes the wedges of a vertex with these faces. `given`: by attribute, numbers of the wedges from `first_given` on.
-  bool code_vertex(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges, std::span<const Vec3i> positions,
+  bool code_vertex(BitCoder& coder, const PatchMesh& mesh, const WedgeTable& wedges, const GridPoints& positions,
                    Index vertex, std::span<const Index> faces, std::span<const std::vector<std::int32_t>> given,
                    Index first_given);
 

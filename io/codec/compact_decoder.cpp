@@ -105,7 +105,7 @@ void CompactDecoder::add_moves() {
 /// Adds the positions of the newest vertices and the attributes of the newest wedges.
 Result<void> CompactDecoder::add_values(BitCoder& coder) {
   for (std::size_t v = mesh_.positions.size(); v < levels_.positions().size(); ++v) {
-    const Vec3i& point = levels_.positions()[v];
+    const Vec3i point = levels_.positions()[v];
     Vec3f& position = mesh_.positions.emplace_back(header_.place(point));
     if (rests_ && !rests_->code_position(coder, point, {}, position)) return broken("a position is no number");
   }

@@ -413,7 +413,7 @@ bool CompactEncoder::write_attributes(bool of_base) {
 void CompactEncoder::write_rests() {
   if (!rests_) return;
   for (const Index vertex : rest_vertices_) {
-    const Vec3i& point = levels_.positions()[coded_.vertex[vertex]];
+    const Vec3i point = levels_.positions()[coded_.vertex[vertex]];
     Vec3f position = header_.place(point);
     rests_->code_position(coder_, point, mesh_.positions[vertex], position);
   }

@@ -72,7 +72,7 @@ FastTextureCoder::FastTextureCoder(const AttributeSpec& spec) : ElementCoder(spe
 void FastTextureCoder::gather(const ElementPlace& place) {
   const Vec3i n = surface_of(place);
   const int z = longest_axis(n), x = z == 0 ? 1 : 0, y = 3 - z - x;
-  const Vec3i& own = place.positions[place.wedges.vertex(place.wedge)];
+  const Vec3i own = place.positions[place.wedges.vertex(place.wedge)];
   points_.clear();
   std::uint64_t largest = 0;
   for (const Index wedge : place.ring) {

@@ -43,24 +43,34 @@ void FastShapes::add_base() {
 
 void FastShapes::add_loose() { misses_.push_back(kUsualMiss); }
 
+/// Finds the vertices around and beyond: by themselves, so that the waits for memory overlap.
+void FastShapes::gather(const Around& around) {
+  const PatchMesh& mesh = around.mesh;
+  ring_.clear();
+  for (const Index half : around.outer) {
+    const Index twin = mesh.twin(half);
+    ring_.push_back({mesh.from(half), twin == kNoIndex ? kNoIndex : mesh.apex(twin)});
+  }
+  ring_.push_back({mesh.to(around.outer.back()), kNoIndex});
+}
+
 /// Looks at the ring of a new vertex.
 void FastShapes::expect(const Around& around) {
-  const PatchMesh& mesh = around.mesh;
-  const Vec3i first = around.positions[mesh.from(around.outer.front())];
+  gather(around);
+  const Vec3i first = around.positions[ring_.front().vertex];
   Vec3i sum, area, sum_beyond, area_beyond, from;
   std::int64_t squares = 0, planes = 0, count_beyond = 0;
   MissSum misses;
   const auto add_miss = [&](Index vertex) {
     if (vertex >= base_count_ && vertex < misses_.size()) misses.add(misses_[vertex]);
   };
-  for (const Index half : around.outer) {
-    const Vec3i to = around.positions[mesh.to(half)] - first;
+  for (std::size_t i = 0; i + 1 < ring_.size(); ++i) {
+    const Vec3i to = around.positions[ring_[i + 1].vertex] - first;
     sum = sum + from;
     squares += dot(from, from);
     area = area + cross(from, to);
-    add_miss(mesh.from(half));
-    if (const Index twin = mesh.twin(half); twin != kNoIndex) {
-      const Index apex = mesh.apex(twin);
+    add_miss(ring_[i].vertex);
+    if (const Index apex = ring_[i].beyond; apex != kNoIndex) {
       const Vec3i beyond = around.positions[apex] - first;
       const Vec3i normal = cross(to - from, from - beyond);
       sum_beyond = sum_beyond + beyond;
@@ -71,7 +81,7 @@ void FastShapes::expect(const Around& around) {
     }
     from = to;
   }
-  if (!around.closed) add_miss(mesh.to(around.outer.back()));
+  if (!around.closed) add_miss(ring_.back().vertex);
 
   const auto count = static_cast<std::int64_t>(around.outer.size());
   const Vec3i centre = mean_of(sum, count);  // all as seen from the first corner

@@ -13,7 +13,7 @@ class FastShapes final : public ShapeCoder {
  public:
   explicit FastShapes(int grid_bits) : ShapeCoder(grid_bits) {}
 
-  void start_round(const PatchMesh&, std::span<const Vec3i>) override {}
+  void start_round(const PatchMesh&, const GridPoints&) override {}
 
  private:
   /// A point that is expected, and how far from it. Lengths in sixteenths of the grid's step.
@@ -30,6 +30,7 @@ class FastShapes final : public ShapeCoder {
   bool code_new(BitCoder& coder, const Around& around, Vec3i& position) override;
   bool code_moved(BitCoder& coder, const Around& around, Index vertex, Vec3i& position) override;
 
+  void gather(const Around& around);
   void expect(const Around& around);
   Miss code_near(BitCoder& coder, NumberCoder& numbers, Vec3i& position) const;
 
@@ -39,6 +40,10 @@ class FastShapes final : public ShapeCoder {
   std::vector<std::optional<Miss>> moved_;  // by vertex that has moved
 
   // Of the vertex at hand.
+  struct Corner {
+    Index vertex, beyond;
+  };
+  std::vector<Corner> ring_;  // and once more its last corner
   Expected expected_;
   int log_radius_ = 0;
 };

@@ -11,7 +11,7 @@ class FittedShapes final : public ShapeCoder {
  public:
   explicit FittedShapes(int grid_bits) : ShapeCoder(grid_bits) {}
 
-  void start_round(const PatchMesh& mesh, std::span<const Vec3i> positions) override {
+  void start_round(const PatchMesh& mesh, const GridPoints& positions) override {
     look_at_normals(
         mesh, positions, mesh.vertex_count(), [&](Index half) { return mesh.from(half); }, normals_);
   }

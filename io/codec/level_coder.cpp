@@ -53,14 +53,15 @@ bool LevelCoder::code_flag(BitCoder& coder, std::uint32_t which, bool is) {
 
 bool LevelCoder::code_base(BitCoder& coder, BaseMesh& base) {
   if (!base_coder_.code(coder, base, limits_.most_wedges, wedges_)) return false;
-  for (Vec3i& position : base.positions)
+  for (Vec3i& position : base.positions) {
     if (!shapes_->code_base(coder, position) || !coder.goes_on()) return false;
-  positions_ = base.positions;
+    positions_.push_back(position);
+  }
   moved_.assign(positions_.size(), 1);
   std::vector<Index> corners = base.corners, wedges;
   for (std::size_t c = 0; c < corners.size(); ++c) wedges.push_back(wedges_.begin(corners[c]) + base.wedges[c]);
   for (std::size_t c = 0; c < corners.size(); c += 3) rotate_face(&corners[c], &wedges[c]);
-  mesh_.start(std::move(corners), std::move(wedges), base.groups, positions_.size());
+  mesh_.start(corners, wedges, base.groups, positions_.size());
   return true;
 }
 
@@ -85,7 +86,7 @@ bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std
     moves_.push_back({star, vertex, positions_[vertex], to});
     patch_coder_.note_move(mesh_, vertex, half);
   }
-  positions_[vertex] = to;
+  positions_.set(vertex, to);
   moved_[vertex] = 1;
   --unmoved_count_;
   return true;
@@ -320,7 +321,8 @@ bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
   const auto star_of = [&](std::size_t i) { return vertices_.stars_of(i).front(); };
   for (std::size_t i = 0; i < count; ++i) {
     const Index star = star_of(i);
-    positions_[first + i] = ShapeCoder::guess(mesh_, stars_.star(star), stars_.stars[star].closed, positions_);
+    positions_.set(first + i,
+                   ShapeCoder::guess(mesh_, stars_.star(star), stars_.stars[star].closed, positions_));
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Index star = star_of(i);
@@ -328,7 +330,7 @@ bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
     if (!shapes_->code_point(coder, mesh_, stars_.star(star), stars_.stars[star].closed, positions_, position))
       return false;
     if (!coder.goes_on()) return false;
-    positions_[first + i] = position;
+    positions_.set(first + i, position);
   }
   return true;
 }

@@ -111,7 +111,7 @@ class LevelCoder {
 
   const PatchMesh& mesh() const { return mesh_; }
   const WedgeTable& wedges() const { return wedges_; }
-  std::span<const Vec3i> positions() const { return positions_; }
+  const GridPoints& positions() const { return positions_; }
   /// Of the last round.
   const RoundPatches& patches() const { return patches_; }
   const NewStars& stars() const { return stars_; }
@@ -167,7 +167,7 @@ class LevelCoder {
   LevelLimits limits_;
   PatchMesh mesh_;
   WedgeTable wedges_;
-  std::vector<Vec3i> positions_;
+  GridPoints positions_;
   BaseCoder base_coder_;
   PatchCoder patch_coder_;
   WedgeCoder wedge_coder_;

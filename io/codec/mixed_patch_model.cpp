@@ -70,8 +70,8 @@ void MixedPatchModel::look_at_faces(const PatchWalk& walk) {
   asked_.assign(3 * face_count, 0);
   looks_.resize(face_count);
   for (const Index f : walk.changed) {
-    const Vec3i& a = positions_[mesh_->from(3 * f)];
-    Vec3i n = cross(positions_[mesh_->from(3 * f + 1)] - a, positions_[mesh_->from(3 * f + 2)] - a);
+    const Vec3i a = (*positions_)[mesh_->from(3 * f)];
+    Vec3i n = cross((*positions_)[mesh_->from(3 * f + 1)] - a, (*positions_)[mesh_->from(3 * f + 2)] - a);
     const int shift = shorten(n, 30);
     sum_of_face_logs_ -= face_logs_[f];
     face_logs_[f] = static_cast<std::int16_t>(log2_16(squared(n)) + 32 * shift);
@@ -211,7 +211,7 @@ bool MixedPatchModel::code_edge(BitCoder& coder, const PatchWalk& walk, std::siz
   const std::uint32_t pair = plain * 3 + patched;
   const std::uint32_t seam = std::min(walk.crossed, 2U) * 2 + (walk.is_seam(half) ? 1 : 0);
   const std::uint32_t relative = bucket(length - lengths / static_cast<int>(walk.polygon.size() + 1), -32, 5, kRatios);
-  const int across = log2_16(squared(positions_[mesh_->apex(half)] - positions_[apex]));
+  const int across = log2_16(squared((*positions_)[mesh_->apex(half)] - (*positions_)[apex]));
   const std::uint32_t flip = bucket(across - length, -40, 5, kRatios);
   // The edge as seen from the polygon's middle, and how far beyond it the patch would reach.
   const std::size_t next = i + 1 < walk.polygon.size() ? i + 1 : 0;
@@ -220,7 +220,7 @@ bool MixedPatchModel::code_edge(BitCoder& coder, const PatchWalk& walk, std::siz
       log2_16(static_cast<std::uint64_t>(std::abs(along))) - (radius_logs_[i] + radius_logs_[next]) / 2;
   const auto cosine = static_cast<int>(exp2_16(std::min(log_cosine, 0) + 16 * 6));
   const std::uint32_t angle = bucket(along < 0 ? -cosine : cosine, -64, 8, kRatios);
-  const int reach = log2_16(squared(positions_[apex] * 16 - centre_));
+  const int reach = log2_16(squared((*positions_)[apex] * 16 - centre_));
   const std::uint32_t far = bucket((reach - mean_radius_log_) / 2, -16, 3, kRatios);
   const Around &a = around_[mesh_->from(half)], &b = around_[mesh_->to(half)], &c = around_[apex];
   const std::uint32_t balance =
@@ -249,14 +249,14 @@ void MixedPatchModel::decide(const PatchWalk& walk, Index face) {
 
 void MixedPatchModel::change_polygon(const PatchWalk& walk) {
   Vec3i sum;
-  for (const Index corner : walk.corners) sum = sum + positions_[corner];
+  for (const Index corner : walk.corners) sum = sum + (*positions_)[corner];
   const auto count = static_cast<std::int64_t>(walk.polygon.size());
   centre_ = divide(sum * 16, count);
   radii_.clear();
   radius_logs_.clear();
   int logs = 0;
   for (const Index corner : walk.corners) {
-    const Vec3i& radius = radii_.emplace_back(positions_[corner] * 16 - centre_);
+    const Vec3i& radius = radii_.emplace_back((*positions_)[corner] * 16 - centre_);
     logs += radius_logs_.emplace_back(log2_16(squared(radius)));
   }
   mean_radius_log_ = logs / static_cast<int>(count);

@@ -64,7 +64,7 @@ class MixedPatchModel final : public PatchModel {
 
   // Of the round at hand.
   const PatchMesh* mesh_ = nullptr;
-  std::span<const Vec3i> positions_;
+  const GridPoints* positions_ = nullptr;
   int mean_face_log_ = 0;
   std::vector<std::uint8_t> asked_;  // by half-edge of uneven flatness: that, plus 1, once it was asked for
   std::vector<std::uint8_t> ages_;   // by face: 0 for those that the last round made; the oldest are alike

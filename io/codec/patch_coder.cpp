@@ -65,7 +65,7 @@ void PatchCoder::find_edge_logs() {
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
       const Index other = mesh().twin(h);
       const bool is_known = other != kNoIndex && walk_.states[face_of_corner(other)] == PatchWalk::kOpen;
-      const auto edge = [&] { return walk_.positions[mesh().from(h)] - walk_.positions[mesh().to(h)]; };
+      const auto edge = [&] { return (*walk_.positions)[mesh().from(h)] - (*walk_.positions)[mesh().to(h)]; };
       walk_.edge_logs[h] = is_known ? walk_.edge_logs[other] : static_cast<std::int16_t>(log2_16(squared(edge())));
     }
     walk_.states[face] = PatchWalk::kOpen;  // known now
@@ -203,10 +203,10 @@ void PatchCoder::code_ears(BitCoder& coder, const PatchPlan* plan, RoundPatches&
       patches.ears.push_back(h);
 }
 
-bool PatchCoder::code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, std::span<const Vec3i> positions,
+bool PatchCoder::code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, const GridPoints& positions,
                       std::uint32_t round, std::span<const Index> made, const PatchPlan* plan, RoundPatches& patches) {
   walk_.mesh = &mesh;
-  walk_.positions = positions;
+  walk_.positions = &positions;
   walk_.round = round;
   walk_.has_seams = has_seams;
   walk_.states.assign(mesh.face_count(), PatchWalk::kOpen);

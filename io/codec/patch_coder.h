@@ -10,6 +10,7 @@
 #include "codec/bit_coder.h"
 #include "codec/bit_mixer.h"
 #include "codec/fixed_point.h"
+#include "codec/grid_points.h"
 #include "codec/number_coder.h"
 #include "codec/patch_mesh.h"
 #include "codec/patch_model.h"
@@ -53,7 +54,7 @@ class PatchCoder {
   /// Codes a round's patches; a reader passes no plan. Without seams none are looked for. False where what is read is
   /// no round. Rounds are numbered from 1 on; what faces look like is remembered from one to the next, but of those that
   /// were `made` in the round before.
-  bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, std::span<const Vec3i> positions,
+  bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, const GridPoints& positions,
             std::uint32_t round, std::span<const Index> made, const PatchPlan* plan, RoundPatches& patches);
 
  private:

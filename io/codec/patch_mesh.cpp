@@ -11,15 +11,15 @@ constexpr std::size_t kMostHalves = 16;  // of an edge; of more, none are twins
 
 }  // namespace
 
-void PatchMesh::start(const std::vector<Index>& corners, std::vector<Index> wedges, std::vector<Index> groups,
+void PatchMesh::start(std::span<const Index> corners, std::span<const Index> wedges, std::span<const Index> groups,
                       std::size_t vertex_count) {
   face_count_ = groups.size();
   halves_.clear();
   for (const Index vertex : corners) halves_.push_back({vertex, kNoIndex});
-  wedges_ = std::move(wedges);
-  groups_ = std::move(groups);
+  wedges_.assign(wedges.begin(), wedges.end());
+  faces_.clear();
+  for (const Index group : groups) faces_.push_back({group, 0});
   degree_.assign(vertex_count, 0);
-  made_in_.assign(face_count_, 0);
   for (const Index vertex : corners) ++degree_[vertex];
   std::vector<Index> halves(corners.size());
   for (Index h = 0; h < halves.size(); ++h) halves[h] = h;
@@ -94,17 +94,15 @@ void PatchMesh::write_face(Index face, const std::array<Index, 3>& vertices, con
     wedges_[3 * face + i] = wedges[i];
     ++degree_[vertices[i]];
   }
-  groups_[face] = group;
-  made_in_[face] = round;
+  faces_[face] = {group, round};
 }
 
 void PatchMesh::reserve(std::size_t more) {
   const std::size_t faces = face_count_ + more;
-  if (faces <= groups_.size()) return;
+  if (faces <= faces_.size()) return;
   halves_.resize(3 * faces);
   wedges_.resize(3 * faces);
-  groups_.resize(faces);
-  made_in_.resize(faces);
+  faces_.resize(faces);
 }
 
 void PatchMesh::place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
@@ -125,8 +123,7 @@ void PatchMesh::place_star(bool closed, std::span<const Index> faces, Index vert
     wedges_[first] = kNoIndex;
     wedges_[first + 1] = outer.from_wedge;
     wedges_[first + 2] = outer.to_wedge;
-    groups_[star[i]] = outer.group;
-    made_in_[star[i]] = round;
+    faces_[star[i]] = {outer.group, round};
     if (outer.twin != kNoIndex) halves_[outer.twin].twin = first + 1;
     ++degree_[outer.from];
     ++degree_[outer.to];

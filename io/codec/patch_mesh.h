@@ -26,9 +26,9 @@ class PatchMesh {
   /// How many faces a vertex has.
   Index degree(Index vertex) const { return degree_[vertex]; }
   /// In which round a face was made last.
-  std::uint32_t made_in(Index face) const { return made_in_[face]; }
+  std::uint32_t made_in(Index face) const { return faces_[face].made_in; }
   Index wedge(Index corner) const { return wedges_[corner]; }
-  Index group(Index face) const { return groups_[face]; }
+  Index group(Index face) const { return faces_[face].group; }
   /// Whether wedges or groups differ on the sides of an edge; not at borders.
   bool is_seam(Index half) const {
     const Index other = twin(half);
@@ -37,7 +37,7 @@ class PatchMesh {
 
   /// Starts with base faces. Of the half-edges between two vertices those are twins that run in opposite directions
   /// between the same wedges in the same group, and then what is left, where that is one of each direction.
-  void start(const std::vector<Index>& corners, std::vector<Index> wedges, std::vector<Index> groups,
+  void start(std::span<const Index> corners, std::span<const Index> wedges, std::span<const Index> groups,
              std::size_t vertex_count);
 
   /// Makes room for so many more faces: faster than face by face.
@@ -52,7 +52,7 @@ class PatchMesh {
   void add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& stars);
 
   void set_wedge(Index corner, Index wedge) { wedges_[corner] = wedge; }
-  void set_group(Index face, Index group) { groups_[face] = group; }
+  void set_group(Index face, Index group) { faces_[face].group = group; }
 
   /// A vertex without faces.
   void add_vertex() { degree_.push_back(0); }
@@ -68,8 +68,13 @@ class PatchMesh {
   std::uint32_t join_count() const { return join_count_; }
 
  private:
+  // What is looked at together stands together.
   struct Half {
     Index from, twin;
+  };
+  struct Face {
+    Index group;
+    std::uint32_t made_in;
   };
   struct Outer {
     Index from, to, twin, from_wedge, to_wedge, group;
@@ -78,16 +83,15 @@ class PatchMesh {
                   std::vector<Index>& stars);
   /// Whether two half-edges in opposite directions have the same wedges and group.
   bool fit(Index half, Index other) const {
-    return wedges_[half] == wedges_[next_corner(other)] && wedges_[next_corner(half)] == wedges_[other] &&
-           groups_[face_of_corner(half)] == groups_[face_of_corner(other)];
+    return wedge(half) == wedge(next_corner(other)) && wedge(next_corner(half)) == wedge(other) &&
+           group(face_of_corner(half)) == group(face_of_corner(other));
   }
 
   // There may be room for more faces than there are.
   std::size_t face_count_ = 0;
   std::vector<Half> halves_;
   std::vector<Index> wedges_;  // by corner
-  std::vector<Index> groups_;  // by face
-  std::vector<std::uint32_t> made_in_;
+  std::vector<Face> faces_;
   std::vector<Index> degree_;
   std::uint32_t join_count_ = 0;
   std::vector<Outer> outer_;

@@ -10,6 +10,7 @@
 
 #include "codec/bit_coder.h"
 #include "codec/fixed_point.h"
+#include "codec/grid_points.h"
 #include "codec/patch_mesh.h"
 
 namespace lodestone::detail {
@@ -21,7 +22,7 @@ struct PatchWalk {
   static constexpr std::uint8_t kStateBits = 3, kIsSeen = 4, kIsDecided = 8;
 
   const PatchMesh* mesh = nullptr;
-  std::span<const Vec3i> positions;
+  const GridPoints* positions = nullptr;
   std::uint32_t round = 0;
   bool has_seams = false;
   std::vector<Index> changed;           // faces that were made, or had a corner moved, since the round before

@@ -18,7 +18,7 @@ Vec3i unit(Vec3i v) {
   return scaled(v, (std::int64_t{1} << (kUnitBits + kScaleBits)) / length);
 }
 
-void Ring::look(const PatchMesh& mesh, std::span<const Index> outer, bool closed, std::span<const Vec3i> positions,
+void Ring::look(const PatchMesh& mesh, std::span<const Index> outer, bool closed, const GridPoints& positions,
                 std::span<const Vec3i> normals) {
   corners_.clear();
   beyond_.clear();
@@ -57,7 +57,7 @@ void Ring::find_mean(std::span<const Index> outer, bool closed) {
   log_least = log2_16(least) / 2;
 }
 
-void Ring::find_pulls(const PatchMesh& mesh, std::span<const Index> outer, std::span<const Vec3i> positions,
+void Ring::find_pulls(const PatchMesh& mesh, std::span<const Index> outer, const GridPoints& positions,
                       std::span<const Vec3i> normals) {
   Vec3i beyond, edges, parallelograms, planes;
   std::int64_t edge_weight = 0, parallelogram_weight = 0, distance = 0;

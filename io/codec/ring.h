@@ -8,6 +8,7 @@
 #include <lodestone/core/ids.h>
 
 #include "codec/fixed_point.h"
+#include "codec/grid_points.h"
 #include "codec/patch_mesh.h"
 
 namespace lodestone::detail {
@@ -28,11 +29,11 @@ Vec3i unit(Vec3i v);
 /// Finds the unit normals of `count` vertices or wedges, the mean of the faces around by area; `left` says which of
 /// them a half-edge leaves.
 template <class Left>
-void look_at_normals(const PatchMesh& mesh, std::span<const Vec3i> positions, std::size_t count, const Left& left,
+void look_at_normals(const PatchMesh& mesh, const GridPoints& positions, std::size_t count, const Left& left,
                      std::vector<Vec3i>& normals) {
   normals.assign(count, {});
   for (Index face = 0; face < mesh.face_count(); ++face) {
-    const Vec3i& p = positions[mesh.from(3 * face)];
+    const Vec3i p = positions[mesh.from(3 * face)];
     const Vec3i n = cross(positions[mesh.from(3 * face + 1)] - p, positions[mesh.from(3 * face + 2)] - p);
     for (Index half = 3 * face; half < 3 * face + 3; ++half) normals[left(half)] = normals[left(half)] + n;
   }
@@ -52,7 +53,7 @@ class Ring {
 
   /// Looks at the star of a vertex: `outer`, the half-edges across from it, in order; `normals` are those of the
   /// vertices around.
-  void look(const PatchMesh& mesh, std::span<const Index> outer, bool closed, std::span<const Vec3i> positions,
+  void look(const PatchMesh& mesh, std::span<const Index> outer, bool closed, const GridPoints& positions,
             std::span<const Vec3i> normals);
 
   std::span<const Index> corners() const { return corners_; }
@@ -74,7 +75,7 @@ class Ring {
 
  private:
   void find_mean(std::span<const Index> outer, bool closed);
-  void find_pulls(const PatchMesh& mesh, std::span<const Index> outer, std::span<const Vec3i> positions,
+  void find_pulls(const PatchMesh& mesh, std::span<const Index> outer, const GridPoints& positions,
                   std::span<const Vec3i> normals);
   void find_spread();
 

@@ -52,14 +52,14 @@ bool ShapeCoder::code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position
 }
 
 bool ShapeCoder::code_point(BitCoder& coder, const PatchMesh& mesh, std::span<const Index> star, bool closed,
-                            std::span<const Vec3i> positions, Vec3i& position) {
+                            const GridPoints& positions, Vec3i& position) {
   outer_.clear();
   for (const Index face : star) outer_.push_back(3 * face + 1);
   return code_new(coder, {mesh, outer_, closed, positions}, position);
 }
 
 bool ShapeCoder::code_move(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half,
-                           std::span<const Vec3i> positions, Vec3i& position) {
+                           const GridPoints& positions, Vec3i& position) {
   if (half == kNoIndex) return code_numbers(coder, bare_, positions[vertex] * 16, std::int64_t{16} << from_, position);
   find_star(mesh, half);
   return code_moved(coder, {mesh, outer_, closed_, positions}, vertex, position);
@@ -92,7 +92,7 @@ void ShapeCoder::find_star(const PatchMesh& mesh, Index half) {
 }
 
 Vec3i ShapeCoder::guess(const PatchMesh& mesh, std::span<const Index> star, bool closed,
-                        std::span<const Vec3i> positions) {
+                        const GridPoints& positions) {
   const Vec3i first = positions[mesh.from(3 * star.front() + 1)];
   if (!closed) return divide(first + positions[mesh.to(3 * star.back() + 1)], 2);
   Vec3i sum;

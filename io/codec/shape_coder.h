@@ -9,6 +9,7 @@
 
 #include "codec/bit_coder.h"
 #include "codec/fixed_point.h"
+#include "codec/grid_points.h"
 #include "codec/number_coder.h"
 #include "codec/patch_mesh.h"
 
@@ -29,7 +30,7 @@ class ShapeCoder {
   /// them has moved.
   void start_stage(int from, int to, std::size_t vertex_count);
   /// Looks at the level before a round, or before the vertices of a stage that are left move.
-  virtual void start_round(const PatchMesh& mesh, std::span<const Vec3i> positions) = 0;
+  virtual void start_round(const PatchMesh& mesh, const GridPoints& positions) = 0;
 
   // Of these, `position` is what a writer has, and a reader gets; false where what is read lies off the grid.
 
@@ -39,13 +40,13 @@ class ShapeCoder {
   bool code_loose(BitCoder& coder, const Vec3i& guess, Vec3i& position);
   /// Codes the next vertex. `star`: its faces in order, it first in each. Those of its round that follow have a guess.
   bool code_point(BitCoder& coder, const PatchMesh& mesh, std::span<const Index> star, bool closed,
-                  std::span<const Vec3i> positions, Vec3i& position);
+                  const GridPoints& positions, Vec3i& position);
   /// Codes where a vertex goes. `half`: a half-edge that leaves it, or kNoIndex.
-  bool code_move(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, std::span<const Vec3i> positions,
+  bool code_move(BitCoder& coder, const PatchMesh& mesh, Index vertex, Index half, const GridPoints& positions,
                  Vec3i& position);
 
   /// Guesses where a new vertex lies, for those that are coded before it.
-  static Vec3i guess(const PatchMesh& mesh, std::span<const Index> star, bool closed, std::span<const Vec3i> positions);
+  static Vec3i guess(const PatchMesh& mesh, std::span<const Index> star, bool closed, const GridPoints& positions);
 
  protected:
   /// What is around a vertex: the half-edges across from it, in order.
@@ -53,7 +54,7 @@ class ShapeCoder {
     const PatchMesh& mesh;
     std::span<const Index> outer;
     bool closed;
-    std::span<const Vec3i> positions;
+    const GridPoints& positions;
   };
   virtual void add_base() = 0;
   virtual void add_loose() = 0;

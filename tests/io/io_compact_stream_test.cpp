@@ -675,7 +675,8 @@ TEST_CASE("of a wide star, the first faces tell of its wedges") {
     corners.insert(corners.end(), {kFaces, i, (i + 1) % kFaces});
   }
   mesh.start(corners, corners, groups, kFaces + 1);
-  const std::vector<Vec3i> positions(kFaces + 1);
+  GridPoints positions;
+  positions.resize(kFaces + 1);
   // Far from the first face all have the same value, the new vertex too; the next ones have others.
   const auto bits_of = [&](Index first_same) {
     AttributeSpec spec;
