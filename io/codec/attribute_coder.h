@@ -83,8 +83,8 @@ class ElementCoder {
 
   AttributeSpec spec_;
   std::vector<std::int32_t> numbers_;
-  BitMixer same_{std::array<std::uint32_t, 1>{kSame}, 1};
-  BitMixer common_{std::array<std::uint32_t, 1>{kCommon * kCommon * 2}, 1};
+  BitMixer<1> same_{{kSame}, 1};
+  BitMixer<1> common_{{kCommon * kCommon * 2}, 1};
   bool was_common_ = false;
 
   static constexpr std::uint32_t kSame = 4;

@@ -35,7 +35,7 @@ class BaseCoder {
   bool code_wedges(BitCoder& coder, BaseMesh& base);
   bool code_bit(BitCoder& coder, std::uint32_t context, bool is);
 
-  BitMixer bits_{std::array<std::uint32_t, 1>{8}, 1};
+  BitMixer<1> bits_{{8}, 1};
 };
 
 }  // namespace lodestone::detail

@@ -2,11 +2,10 @@
 
 namespace lodestone::detail {
 
+int BitCoder::write(int bit, std::uint32_t one) { return BitRun<false>(*this).code(bit, one); }
+
 std::uint32_t BitCoder::code_raw(std::uint32_t value, int count) {
-  BitRun run(*this);
-  std::uint32_t result = 0;
-  while (count-- > 0) result = result << 1U | static_cast<std::uint32_t>(run.code_even(value >> count & 1U));
-  return result;
+  return is_reading() ? BitRun<true>(*this).code_raw(value, count) : BitRun<false>(*this).code_raw(value, count);
 }
 
 void BitCoder::put(std::uint32_t byte) { output_.push_back(static_cast<std::byte>(byte)); }

@@ -7,6 +7,10 @@
 #include <utility>
 #include <vector>
 
+#ifndef LODESTONE_RUNTIME_ONLY
+#define LODESTONE_RUNTIME_ONLY 0
+#endif
+
 namespace lodestone::detail {
 
 /// Hears from a writer that it is at work; false ends that.
@@ -27,6 +31,8 @@ class BitCoder {
     for (int i = 0; i < 4; ++i) code_ = code_ << 8U | next_byte();
   }
 
+  /// Whether it reads: nothing else where there is no encoder, so that compilers leave writing out.
+  bool is_reading() const { return LODESTONE_RUNTIME_ONLY != 0 || reading_; }
   /// Which models numbers are coded by.
   bool is_fast() const { return is_fast_; }
 
@@ -51,8 +57,10 @@ class BitCoder {
   bool goes_on() const { return listener_ == nullptr || listener_->step(); }
 
  private:
+  template <bool kReads>
   friend class BitRun;
 
+  int write(int bit, std::uint32_t one);
   void put(std::uint32_t byte);
   std::uint32_t next_byte() {
     const std::size_t at = read_++;
@@ -71,11 +79,11 @@ class BitCoder {
 };
 
 /// Codes bits one after the other, with what the coder is at hand in registers; the coder has it again when this ends,
-/// and codes nothing until then.
+/// and codes nothing until then. Pre: the coder reads, or writes, as this does.
+template <bool kReads>
 class BitRun {
  public:
-  explicit BitRun(BitCoder& coder)
-      : coder_(coder), low_(coder.low_), high_(coder.high_), code_(coder.code_), reading_(coder.reading_) {}
+  explicit BitRun(BitCoder& coder) : coder_(coder), low_(coder.low_), high_(coder.high_), code_(coder.code_) {}
   BitRun(const BitRun&) = delete;
   BitRun& operator=(const BitRun&) = delete;
   ~BitRun() {
@@ -86,23 +94,35 @@ class BitRun {
 
   /// As BitCoder::code.
   int code(int bit, std::uint32_t one) {
-    return split(bit, static_cast<std::uint32_t>(std::uint64_t{high_ - low_} * one >> 16U));
+    const std::uint32_t middle = low_ + static_cast<std::uint32_t>(std::uint64_t{high_ - low_} * one >> 16U);
+    if (kReads) bit = code_ <= middle ? 1 : 0;
+    if (bit != 0)
+      high_ = middle;
+    else
+      low_ = middle + 1;
+    while (((low_ ^ high_) >> 24U) == 0) shift();
+    return bit;
   }
-  /// Codes a bit both values of which are as likely.
-  int code_even(int bit) { return split(bit, (high_ - low_) >> 1U); }
+  /// As BitCoder::code_raw.
+  std::uint32_t code_raw(std::uint32_t value, int count) {
+    std::uint32_t result = 0;
+    while (count-- > 0) result = result << 1U | code_even(value >> count & 1U);
+    return result;
+  }
 
  private:
-  /// Nothing branches on the bit here: nobody can foretell it.
-  int split(int bit, std::uint32_t part) {
-    const std::uint32_t middle = low_ + part;
-    if (reading_) bit = code_ <= middle ? 1 : 0;
-    high_ = bit != 0 ? middle : high_;
-    low_ = bit != 0 ? low_ : middle + 1;
+  /// The same as `code` of a bit that nobody can foretell: without a branch on it.
+  std::uint32_t code_even(std::uint32_t bit) {
+    const std::uint32_t middle = low_ + ((high_ - low_) >> 1U);
+    if (kReads) bit = code_ <= middle ? 1 : 0;
+    const std::uint32_t is_upper = 0U - bit;  // all bits where the bit is 1
+    high_ = (middle & is_upper) | (high_ & ~is_upper);
+    low_ = (low_ & is_upper) | ((middle + 1) & ~is_upper);
     while (((low_ ^ high_) >> 24U) == 0) shift();
     return bit;
   }
   void shift() {
-    if (reading_)
+    if (kReads)
       code_ = code_ << 8U | coder_.next_byte();
     else
       coder_.put(high_ >> 24U);
@@ -112,9 +132,10 @@ class BitRun {
 
   BitCoder& coder_;
   std::uint32_t low_, high_, code_;
-  bool reading_;
 };
 
-inline int BitCoder::code(int bit, std::uint32_t one) { return BitRun(*this).code(bit, one); }
+inline int BitCoder::code(int bit, std::uint32_t one) {
+  return is_reading() ? BitRun<true>(*this).code(bit, one) : write(bit, one);
+}
 
 }  // namespace lodestone::detail

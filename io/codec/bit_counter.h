@@ -8,10 +8,17 @@
 
 namespace lodestone::detail {
 
-/// How fast a counter learns, by how often it was seen.
-inline constexpr std::array<std::uint32_t, 61> kCounterRates = [] {
-  std::array<std::uint32_t, 61> rates{};
-  for (std::uint32_t seen = 0; seen < rates.size(); ++seen) rates[seen] = 2 * 65536 / (2 * seen + 3);
+/// How fast a counter learns, by how often it was seen, up to a limit.
+struct CounterRate {
+  std::uint16_t rate = 0;  ///< / 65536
+  std::uint16_t next = 0;  ///< the number it is seen by then
+};
+template <std::size_t kSlowest>
+inline constexpr std::array<CounterRate, kSlowest + 1> kCounterRates = [] {
+  std::array<CounterRate, kSlowest + 1> rates{};
+  for (std::size_t seen = 0; seen <= kSlowest; ++seen)
+    rates[seen] = {static_cast<std::uint16_t>(2 * 65536 / (2 * seen + 3)),
+                   static_cast<std::uint16_t>(seen < kSlowest ? seen + 1 : kSlowest)};
   return rates;
 }();
 
@@ -21,18 +28,24 @@ class BitCounter {
   /// Of a 1, / 65536; in 1 … 65535.
   std::uint32_t one() const { return one_; }
 
-  /// Counts a bit; `flip`: 65535 for 1, 0 for 0. It forgets as an average over `slowest` bits does, 60 at most.
-  void add(std::uint32_t flip, std::uint16_t slowest) {
+  /// Counts a bit; `flip`: 65535 for 1, 0 for 0. It forgets as an average over so many bits does as `rates` go up to.
+  template <std::size_t N>
+  void add(std::uint32_t flip, const std::array<CounterRate, N>& rates) {
+    const CounterRate& rate = rates[seen_];
     const std::uint32_t other = one_ ^ flip;  // counts zeros as ones
-    one_ = static_cast<std::uint16_t>((other - (other * kCounterRates[seen_] >> 16U)) ^ flip);
-    seen_ = static_cast<std::uint16_t>(seen_ + (seen_ < slowest ? 1 : 0));
+    one_ = static_cast<std::uint16_t>((other - (other * rate.rate >> 16U)) ^ flip);
+    seen_ = rate.next;
   }
 
   /// Codes a bit by this alone. `coder`: a BitCoder or BitRun.
   template <class Coder>
   int code(Coder& coder, int bit) {
-    bit = coder.code(bit, one_);
-    add(bit != 0 ? 65535 : 0, kCounterRates.size() - 1);
+    const CounterRate& rate = kCounterRates<60>[seen_];
+    seen_ = rate.next;
+    const std::uint32_t one = one_;
+    bit = coder.code(bit, one);
+    one_ = static_cast<std::uint16_t>(bit != 0 ? one + ((65535 - one) * rate.rate >> 16U)
+                                               : one - (one * rate.rate >> 16U));
     return bit;
   }
 

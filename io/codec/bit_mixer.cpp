@@ -1,7 +1,6 @@
 #include "codec/bit_mixer.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace lodestone::detail {
 namespace {
@@ -15,10 +14,12 @@ constexpr std::array<std::int32_t, 45> kAnchors = {
     1921,  3108,  4971,  7812,  11955, 17625, 24743, 32768, 40793, 47911, 53581, 57724, 60565, 62428, 63615,
     64357, 64816, 65097, 65269, 65374, 65438, 65476, 65500, 65514, 65523, 65528, 65531, 65533, 65534, 65535};
 
+/// Of odds within the limit.
 constexpr std::int32_t probability(int odds) {
-  const int x = std::clamp(odds, -kOddsLimit, kOddsLimit) + kAnchorStep * 22;
-  const int i = x / kAnchorStep, rest = x % kAnchorStep;
-  return kAnchors[i] + (kAnchors[i + 1] - kAnchors[i]) * rest / kAnchorStep;
+  const auto x = static_cast<std::uint32_t>(odds + kAnchorStep * 22);
+  const std::uint32_t i = x / kAnchorStep, rest = x % kAnchorStep;
+  const std::int32_t low = kAnchors[i];
+  return low + static_cast<std::int32_t>(static_cast<std::uint32_t>(kAnchors[i + 1] - low) * rest / kAnchorStep);
 }
 
 constexpr std::array<std::int16_t, 4096> make_odds() {
@@ -33,59 +34,53 @@ constexpr std::array<std::int16_t, 4096> make_odds() {
 constexpr std::array<std::int16_t, 4096> kOdds = make_odds();
 
 constexpr int kWeightBits = 13;         // fractional: weights lie within 4
-constexpr std::uint16_t kSlowest = 30;  // a counter forgets as an average over this many bits does
+constexpr std::size_t kSlowest = 30;  // a counter forgets as an average over this many bits does
 
 constexpr int kWeightsSettle = 60;  // bits after which weights are learnt more slowly
 
 }  // namespace
 
-BitMixer::BitMixer(std::span<const std::uint32_t> context_counts, std::uint32_t selector_count)
-    : input_count_(static_cast<int>(context_counts.size())) {
-  assert(input_count_ == 1 || input_count_ == 2 || input_count_ == 5 || input_count_ == 7 || input_count_ == 8);
+template <int kInputs>
+BitMixer<kInputs>::BitMixer(const Contexts& context_counts, std::uint32_t selector_count) {
   std::uint32_t count = 0;
-  for (int i = 0; i < input_count_; ++i) {
+  for (std::size_t i = 0; i < kInputs; ++i) {
     first_[i] = count;
     count += context_counts[i];
   }
   counters_.resize(count);
-  const auto weight = static_cast<std::int16_t>((12 << kWeightBits) / 10 / input_count_);
+  const auto weight = static_cast<std::int16_t>((12 << kWeightBits) / 10 / kInputs);
   // Those of inputs that are not there are never asked for.
-  weights_.assign(selector_count, Lanes(weight, weight, weight, weight, weight, weight, weight, weight));
-  used_.assign(selector_count, 0);
+  weights_.assign(selector_count, {Lanes(weight, weight, weight, weight, weight, weight, weight, weight), 0});
 }
 
-/// The number of inputs is known to the compiler: it is what most of the time goes into.
+template <int kInputs>
+int BitMixer<kInputs>::code(BitCoder& coder, int bit, const Contexts& contexts, std::uint32_t selector) {
+  return code(coder, bit, contexts, selector, std::make_index_sequence<kInputs>());
+}
+
+template <int kInputs>
 template <std::size_t... I>
-int BitMixer::code_mixed(BitCoder& coder, int bit, const std::uint32_t* contexts, std::uint32_t selector,
-                         std::index_sequence<I...>) {
+int BitMixer<kInputs>::code(BitCoder& coder, int bit, const Contexts& contexts, std::uint32_t selector,
+                            std::index_sequence<I...>) {
   BitCounter* const counters[] = {&counters_[first_[I] + contexts[I]]...};
   const Lanes odds(kOdds[counters[I]->one() >> 4U]...);
-  Lanes& weights = weights_[selector];
-  const int mixed = std::clamp(dot(odds, weights) >> kWeightBits, -kOddsLimit, kOddsLimit);
+  Weights& weights = weights_[selector];
+  const int mixed = std::clamp(dot(odds, weights.lanes) >> kWeightBits, -kOddsLimit, kOddsLimit);
   const std::int32_t one = std::clamp(probability(mixed), 16, 65520);
   bit = coder.code(bit, static_cast<std::uint32_t>(one));
 
-  const bool has_settled = used_[selector] >= kWeightsSettle;
-  if (!has_settled) ++used_[selector];
-  weights.add_product(odds, static_cast<std::int16_t>(((bit << 16U) - bit - one) >> (has_settled ? 2 : 1)));
+  const bool has_settled = weights.used >= kWeightsSettle;
+  if (!has_settled) ++weights.used;
+  weights.lanes.add_product(odds, static_cast<std::int16_t>(((bit << 16U) - bit - one) >> (has_settled ? 2 : 1)));
   const std::uint32_t flip = bit != 0 ? 65535 : 0;
-  (counters[I]->add(flip, kSlowest), ...);
+  (counters[I]->add(flip, kCounterRates<kSlowest>), ...);
   return bit;
 }
 
-int BitMixer::code(BitCoder& coder, int bit, std::span<const std::uint32_t> contexts, std::uint32_t selector) {
-  switch (input_count_) {
-    case 1:
-      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<1>());
-    case 2:
-      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<2>());
-    case 5:
-      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<5>());
-    case 7:
-      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<7>());
-    default:
-      return code_mixed(coder, bit, contexts.data(), selector, std::make_index_sequence<8>());
-  }
-}
+template class BitMixer<1>;
+template class BitMixer<2>;
+template class BitMixer<5>;
+template class BitMixer<7>;
+template class BitMixer<8>;
 
 }  // namespace lodestone::detail

@@ -44,7 +44,7 @@ class DirectionCoder : public ElementCoder {
 
  private:
   NumberCoder numbers_;
-  BitMixer bits_{std::array<std::uint32_t, 1>{16}, 1};
+  BitMixer<1> bits_{{16}, 1};
   std::int64_t off_ = 0;
 };
 

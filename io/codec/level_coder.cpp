@@ -28,7 +28,7 @@ LevelCoder::LevelCoder(const LevelLimits& limits, std::span<const AttributeSpec>
       loose_coder_(limits.group_count),
       shapes_(ShapeCoder::make(limits.is_fast, limits.grid_bits)),
       attributes_(attributes, limits.is_fast),
-      flags_(std::array<std::uint32_t, 1>{kFlags}, 1) {}
+      flags_({kFlags}, 1) {}
 
 void LevelCoder::allow(std::uint64_t vertices, std::uint64_t wedges, std::uint64_t faces) {
   limits_.most_vertices = positions_.size() + vertices;

@@ -174,7 +174,7 @@ class LevelCoder {
   LooseCoder loose_coder_;
   std::unique_ptr<ShapeCoder> shapes_;
   AttributeCoder attributes_;
-  BitMixer flags_;
+  BitMixer<1> flags_;
   std::uint32_t round_number_ = 0;
   bool has_seams_ = false;     // in the level before the round
   std::uint64_t corners_ = 0;  // of the polygons of all sectors

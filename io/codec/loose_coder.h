@@ -60,7 +60,7 @@ class LooseCoder {
   std::int64_t code_number(BitCoder& coder, std::int64_t number, std::uint32_t kind);
 
   Index group_count_;
-  BitMixer bits_{std::array<std::uint32_t, 1>{16}, 1};
+  BitMixer<1> bits_{{16}, 1};
   NumberCoder numbers_;
   std::unordered_map<std::uint64_t, Index> borders_;  // of loose faces, by their ends
   std::vector<Index> faces_, freed_;

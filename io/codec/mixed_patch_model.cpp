@@ -181,7 +181,7 @@ bool MixedPatchModel::code_face(BitCoder& coder, const PatchWalk& walk, Index fa
   const std::uint32_t state = number_neighbours(plain, patched), size = size_of(face), own_age = ages_[face];
   const std::uint32_t others_age = std::min(ages / 3, kAges - 1);
   const std::uint32_t degree = bucket(degrees, 9, 1, kDegrees);
-  const std::uint32_t contexts[] = {
+  const std::array<std::uint32_t, 7> contexts = {
       ((look.seams * kStates + state) * kAges + own_age) * 4 + others_age,
       state * kSizes + size,
       (look.relative * kShapes + look.shape) * 3 + (patched != 0 ? 2
@@ -227,7 +227,7 @@ bool MixedPatchModel::code_edge(BitCoder& coder, const PatchWalk& walk, std::siz
       bucket(a.degree + b.degree - c.degree - around_[mesh_->apex(half)].degree, -8, 1, kDegrees);
   const std::uint32_t same = mesh_->made_in(face) == mesh_->made_in(beyond) ? 1 : 0;
   const auto at_most_two = [](std::int32_t x) { return static_cast<std::uint32_t>(std::min(x, 2)); };
-  const std::uint32_t contexts[] = {
+  const std::array<std::uint32_t, 8> contexts = {
       (corners * kRatios + relative) * kPairs + pair,
       relative * kRatios + flip,
       (seam * kCorners + corners) * kSizes + size_of(beyond),

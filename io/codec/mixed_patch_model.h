@@ -50,8 +50,8 @@ class MixedPatchModel final : public PatchModel {
   std::array<std::uint32_t, 2> measure_flatness(Index half) const;
   std::uint32_t flatness(const Look& look, Index face, Index k);
 
-  BitMixer faces_;
-  BitMixer edges_;
+  BitMixer<7> faces_;
+  BitMixer<8> edges_;
 
   // Remembered from round to round.
   std::vector<Normal> normals_;          // by face

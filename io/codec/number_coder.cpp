@@ -22,7 +22,8 @@ constexpr std::array<std::uint32_t, 2> kRestContexts = {kNodes * 4, kNodes* kSca
 
 // Of a fast coder: the scale's bits, in sixteenths, above those of a step; how many steps are even; the longest one.
 constexpr int kUnitBelow = 7;
-constexpr std::uint32_t kEvenSteps = 8;
+constexpr int kEvenSteps = 8;
+constexpr int kLastNode = kNodes - 1;
 constexpr int kMostStepBits = 32;
 
 }  // namespace
@@ -40,7 +41,7 @@ std::int64_t NumberCoder::code_mixed(BitCoder& coder, std::int64_t number, const
   std::uint32_t side = 0;
   const auto code_step = [&](std::uint32_t node, int bit) {
     const std::uint32_t f = node < 4 ? (side != 0 ? fraction : fraction ^ 7U) : 0;
-    const std::uint32_t contexts[5] = {
+    const std::array<std::uint32_t, 5> contexts = {
         (node * 2 + (small < 7 ? side : 0)) * kScales + log_scale, (node * kFractions + f) * 8 + small,
         (node * 4 + guess.kind) * kHints + guess.hints[0], (node * 4 + guess.kind) * kHints + guess.hints[1],
         (node * kHints + guess.hints[2]) * 4 + std::min(small / 2, 3U)};
@@ -63,7 +64,7 @@ std::int64_t NumberCoder::code_mixed(BitCoder& coder, std::int64_t number, const
   int level = 0;
   while (end - begin > 1) {
     const std::int64_t middle = begin + (end - begin) / 2;
-    const std::uint32_t contexts[2] = {step * 4 + static_cast<std::uint32_t>(std::min(level, 3)),
+    const std::array<std::uint32_t, 2> contexts = {step * 4 + static_cast<std::uint32_t>(std::min(level, 3)),
                                        step * kScales + log_scale};
     int upper = distance >= middle ? 1 : 0;
     if (level < 2)
@@ -78,28 +79,34 @@ std::int64_t NumberCoder::code_mixed(BitCoder& coder, std::int64_t number, const
 
 /// Steps outwards are half the scale or less, a power of two, from the ninth on twice as long each; where in its step
 /// the number lies are raw bits.
+template <bool kReads>
 std::int64_t NumberCoder::code_counted(BitCoder& coder, std::int64_t number, const Guess& guess) {
   if (counters_.empty()) counters_.resize(std::size_t{4} * kScales * kNodes);
   const auto scale = static_cast<std::uint64_t>(std::max<std::int64_t>(guess.scale, 1));
   const int unit = std::clamp(static_cast<int>(std::bit_width(scale)) - kUnitBelow, 0, kMostStepBits - 1);
   BitCounter* const nodes = &counters_[(guess.kind * kScales + bucket(log2_16(scale), 16, 8, kScales)) * kNodes];
   const std::int64_t first = (guess.value + 15) >> 4;
-  BitRun run(coder);
-  const int side = nodes[0].code(run, number >= first ? 1 : 0);
+  const auto begin_of = [&](int step) {
+    if (step <= kEvenSteps) return std::int64_t{step} << unit;
+    return (kEvenSteps - 2 + (std::int64_t{2} << (step - kEvenSteps))) << unit;
+  };
+  const int last = kEvenSteps + kMostStepBits - 1 - unit;
+  int side = number >= first ? 1 : 0, wanted = 0;
   const std::int64_t distance = side != 0 ? number - first : first - 1 - number;
-  std::int64_t begin = 0;
-  int bits = unit;
-  for (std::uint32_t step = 1; bits < kMostStepBits; ++step) {
-    const std::int64_t end = begin + (std::int64_t{1} << bits);
-    if (nodes[std::min(step, kNodes - 1)].code(run, distance >= end ? 1 : 0) == 0) break;
-    begin = end;
-    if (step >= kEvenSteps) ++bits;
-  }
-  const auto rest = static_cast<std::uint32_t>(distance - begin);
-  std::uint32_t result = 0;
-  while (bits-- > 0) result = result << 1U | static_cast<std::uint32_t>(run.code_even(rest >> bits & 1U));
-  begin += result;
+  if (!kReads)
+    while (wanted < last && distance >= begin_of(wanted + 1)) ++wanted;
+  BitRun<kReads> run(coder);
+  side = nodes[0].code(run, side);
+  int step = 0;
+  while (step < last && nodes[std::min(step + 1, kLastNode)].code(run, step < wanted ? 1 : 0) != 0) ++step;
+  std::int64_t begin = begin_of(step);
+  const int bits = unit + std::max(step - kEvenSteps + 1, 0);
+  begin += run.code_raw(static_cast<std::uint32_t>(distance - begin), bits);
   return side != 0 ? first + begin : first - 1 - begin;
+}
+
+std::int64_t NumberCoder::code_counted(BitCoder& coder, std::int64_t number, const Guess& guess) {
+  return coder.is_reading() ? code_counted<true>(coder, number, guess) : code_counted<false>(coder, number, guess);
 }
 
 }  // namespace lodestone::detail

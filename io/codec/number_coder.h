@@ -33,10 +33,13 @@ class NumberCoder {
 
  private:
   struct Mixers {
-    BitMixer steps, rest;
+    BitMixer<5> steps;
+    BitMixer<2> rest;
     Mixers();
   };
   std::int64_t code_mixed(BitCoder& coder, std::int64_t number, const Guess& guess);
+  std::int64_t code_counted(BitCoder& coder, std::int64_t number, const Guess& guess);
+  template <bool kReads>
   std::int64_t code_counted(BitCoder& coder, std::int64_t number, const Guess& guess);
 
   // Either, from the first number on.

@@ -20,7 +20,7 @@ enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 }  // namespace
 
 PatchCoder::PatchCoder(bool is_fast)
-    : model_(PatchModel::make(is_fast)), borders_(std::array<std::uint32_t, 1>{kBorders}, 1) {}
+    : model_(PatchModel::make(is_fast)), borders_({kBorders}, 1) {}
 
 void PatchCoder::note_move(const PatchMesh& mesh, Index vertex, Index half) {
   if (half == kNoIndex) return;

@@ -75,7 +75,7 @@ class PatchCoder {
   bool has_corner(Index vertex) const;
 
   std::unique_ptr<PatchModel> model_;
-  BitMixer borders_;
+  BitMixer<1> borders_;
   NumberCoder counts_;
   std::vector<Index> moved_;      // faces of vertices that have moved since the last round
   std::vector<Index> scattered_;  // such vertices whose faces do not all hang together

@@ -22,7 +22,7 @@ float step_of(const AttributeSpec& spec) {
 
 }  // namespace
 
-RestCoder::Kind::Kind() : is_same(std::array<std::uint32_t, 1>{4 * 8}, 1) {}
+RestCoder::Kind::Kind() : is_same({4 * 8}, 1) {}
 
 RestCoder::RestCoder(float step, std::span<const AttributeSpec> attributes) {
   positions_.step = step;

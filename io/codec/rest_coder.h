@@ -47,7 +47,7 @@ class RestCoder {
     float step = 0;  // of the grid
     std::vector<Component> components;
     NumberCoder rests;
-    BitMixer is_same;
+    BitMixer<1> is_same;
     Kind();
   };
   static bool code(BitCoder& coder, Kind& kind, std::size_t component, std::int64_t number, float given, float& value);

@@ -42,7 +42,7 @@ class WedgeCoder {
   int code_bit(BitCoder& coder, std::uint32_t context, bool bit);
 
   Index group_count_;
-  BitMixer bits_{std::array<std::uint32_t, 1>{kContexts}, 1};
+  BitMixer<1> bits_{{kContexts}, 1};
   Foretold foretold_;
 
   static constexpr std::uint32_t kContexts = 128;
