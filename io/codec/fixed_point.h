@@ -34,8 +34,11 @@ constexpr std::int64_t exp2_16(int x) {
   return static_cast<std::int64_t>(std::uint64_t{kPowers[x % 16]} << (x / 16) >> 12U);
 }
 
-/// Returns the square root, rounded down. Floats only find where to look.
+/// Returns the square root, rounded down. Floats only find where to look; up to 2^52 the next number is too far from what
+/// they find to be taken for it.
 inline std::uint32_t square_root(std::uint64_t x) {
+  if (x < std::uint64_t{1} << 52U)
+    return static_cast<std::uint32_t>(std::sqrt(static_cast<double>(static_cast<std::int64_t>(x))));
   auto root = std::min<std::uint64_t>(static_cast<std::uint64_t>(std::sqrt(static_cast<double>(x))), 0xFFFFFFFFU);
   while (root * root > x) --root;
   while (root < 0xFFFFFFFFU && (root + 1) * (root + 1) <= x) ++root;
@@ -51,7 +54,7 @@ constexpr std::int64_t divide(std::int64_t a, std::int64_t b) {
 
 /// Numbers a value's step from `low` on, 0 … count − 1; what lies beyond counts as the last.
 constexpr std::uint32_t bucket(int value, int low, int step, std::uint32_t count) {
-  return static_cast<std::uint32_t>(std::clamp((value - low) / step, 0, static_cast<int>(count) - 1));
+  return std::min(static_cast<std::uint32_t>(std::max(value - low, 0)) / static_cast<std::uint32_t>(step), count - 1);
 }
 
 struct Vec3i {
