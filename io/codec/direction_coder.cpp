@@ -80,7 +80,17 @@ FittedDirectionCoder::FittedDirectionCoder(const AttributeSpec& spec)
       misses_(kUsualDirectionMiss) {}
 
 Vec3i FittedDirectionCoder::direction(Index wedge) const {
-  return unit({number(wedge, 0), number(wedge, 1), number(wedge, 2)});
+  if (wedge >= directions_.size()) return {};
+  const std::array<std::int16_t, 3>& d = directions_[wedge];
+  return {d[0], d[1], d[2]};
+}
+
+/// Notes which direction a wedge's numbers are; returns it.
+Vec3i FittedDirectionCoder::note_direction(Index wedge) {
+  const Vec3i d = unit({number(wedge, 0), number(wedge, 1), number(wedge, 2)});
+  if (directions_.size() <= wedge) directions_.resize(wedge + std::size_t{1});
+  directions_[wedge] = {static_cast<std::int16_t>(d.x), static_cast<std::int16_t>(d.y), static_cast<std::int16_t>(d.z)};
+  return d;
 }
 
 Vec3i FittedDirectionCoder::mean_of_ring(const ElementPlace& place) const {
@@ -91,6 +101,7 @@ Vec3i FittedDirectionCoder::mean_of_ring(const ElementPlace& place) const {
 
 /// Likely as far off as the wedge before it.
 void FittedDirectionCoder::pass(const ElementPlace& place) {
+  note_direction(place.wedge);
   misses_.note(place.wedge, place.wedge > 0 ? misses_.of(place.wedge - 1) : misses_.usual());
 }
 
@@ -153,7 +164,9 @@ bool FittedDirectionCoder::code_element(BitCoder& coder, const ElementPlace& pla
     if (numbers.size() > 3) code_sign(coder, place, false, numbers);
     misses_.note(place.wedge, misses_.usual());
     const Vec3i near = place.beside != kNoIndex ? direction(place.beside) : Vec3i{};
-    return code_near(coder, near, 16 * 12, 1, numbers);
+    if (!code_near(coder, near, 16 * 12, 1, numbers)) return false;
+    note_direction(place.wedge);
+    return true;
   }
   const Vec3i around = mean_of_ring(place);
   const Hints hints = numbers.size() > 3 ? tangents_of(place, around) : normals_of(place);
@@ -187,7 +200,7 @@ bool FittedDirectionCoder::code_element(BitCoder& coder, const ElementPlace& pla
   const auto log_error = static_cast<int>(std::clamp<std::int64_t>(size_.predict(traits), 16, 16 * 14));
   if (!code_near(coder, expected, log_error, 0, numbers)) return false;
 
-  const Vec3i found = unit({numbers[0], numbers[1], numbers[2]});
+  const Vec3i found = note_direction(place.wedge);
   for (int c = 0; c < 3; ++c) pulls_.add(pulls[static_cast<std::size_t>(c)], (found[c] - own[c]) / 4);
   pulls_.end_sample();
   const int miss = log_of(length_of(found - expected) + (1 << kUnitBits) / (4 * spec().highest()));

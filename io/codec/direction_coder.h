@@ -64,6 +64,7 @@ class FittedDirectionCoder final : public DirectionCoder {
   using Traits = OnlineFit<kTraits>;
 
   Vec3i direction(Index wedge) const;
+  Vec3i note_direction(Index wedge);
   Vec3i mean_of_ring(const ElementPlace& place) const;
   bool code_near(BitCoder& coder, const Vec3i& expected, int log_error, std::uint32_t kind,
                  std::span<std::int32_t> numbers);
@@ -71,6 +72,7 @@ class FittedDirectionCoder final : public DirectionCoder {
   Pulls pulls_;
   Traits size_;
   WedgeMisses misses_;
+  std::vector<std::array<std::int16_t, 3>> directions_;  // by wedge that has numbers: unit vectors
 };
 
 }  // namespace lodestone::detail
