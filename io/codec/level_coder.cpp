@@ -62,6 +62,7 @@ bool LevelCoder::code_base(BitCoder& coder, BaseMesh& base) {
   for (std::size_t c = 0; c < corners.size(); ++c) wedges.push_back(wedges_.begin(corners[c]) + base.wedges[c]);
   for (std::size_t c = 0; c < corners.size(); c += 3) rotate_face(&corners[c], &wedges[c]);
   mesh_.start(corners, wedges, base.groups, positions_.size());
+  measure_edges();
   return true;
 }
 
@@ -77,6 +78,14 @@ bool LevelCoder::code_step(BitCoder& coder, int& step) {
   return true;
 }
 
+void LevelCoder::measure_edge(Index half) {
+  mesh_.set_edge_log(half, log2_16(squared(positions_[mesh_.from(half)] - positions_[mesh_.to(half)])));
+}
+
+void LevelCoder::measure_edges() {
+  for (Index h = 0; h < 3 * mesh_.face_count(); ++h) measure_edge(h);
+}
+
 /// Codes where a vertex goes.
 bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std::span<const Vec3i> targets) {
   if (++move_count_ > kMostMovesEach * limits_.most_vertices) return false;
@@ -84,9 +93,15 @@ bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std
   if (!shapes_->code_move(coder, mesh_, vertex, half, positions_, to)) return false;
   if (!(to == positions_[vertex])) {
     moves_.push_back({star, vertex, positions_[vertex], to});
-    patch_coder_.note_move(mesh_, vertex, half);
   }
+  const bool has_moved = !(to == positions_[vertex]);
   positions_.set(vertex, to);
+  const auto note_face = [&](Index leaving) {
+    moved_faces_.push_back(face_of_corner(leaving));
+    measure_edge(leaving);
+    if (const Index entering = previous_corner(leaving); mesh_.twin(entering) == kNoIndex) measure_edge(entering);
+  };
+  if (has_moved && half != kNoIndex && !mesh_.visit_faces(half, note_face)) are_all_changed_ = true;
   moved_[vertex] = 1;
   --unmoved_count_;
   return true;
@@ -113,6 +128,7 @@ bool LevelCoder::code_moves(BitCoder& coder, std::span<const Vec3i> targets) {
     begin = patch.polygon_end;
     ++star;
   }
+  if (are_all_changed_) measure_edges();
   return true;
 }
 
@@ -127,6 +143,7 @@ bool LevelCoder::code_stage_end(BitCoder& coder, bool& ends, std::span<const Vec
       if (half[mesh_.from(h)] == kNoIndex) half[mesh_.from(h)] = h;
     for (Index vertex = 0; vertex < positions_.size(); ++vertex)
       if (moved_[vertex] == 0 && !move(coder, vertex, half[vertex], kNoIndex, targets)) return false;
+    if (are_all_changed_) measure_edges();
   }
   moved_.assign(positions_.size(), 0);
   unmoved_count_ = positions_.size();
@@ -135,8 +152,11 @@ bool LevelCoder::code_stage_end(BitCoder& coder, bool& ends, std::span<const Vec
 
 bool LevelCoder::code_patches(BitCoder& coder, const PatchPlan* plan) {
   has_seams_ = limits_.group_count > 1 || wedges_.size() > wedges_.vertex_count();
+  const ChangedFaces changed = {stars_.faces, moved_faces_, are_all_changed_};
   const bool is_round =
-      patch_coder_.code(coder, mesh_, has_seams_, positions_, ++round_number_, stars_.faces, plan, patches_);
+      patch_coder_.code(coder, mesh_, has_seams_, positions_, ++round_number_, changed, plan, patches_);
+  moved_faces_.clear();
+  are_all_changed_ = false;
   vertices_done_ = 0;
   stars_.stars.clear();
   stars_.faces.clear();
@@ -331,8 +351,18 @@ bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
       return false;
     if (!coder.goes_on()) return false;
     positions_.set(first + i, position);
+    measure_spokes(i);
   }
   return true;
+}
+
+/// Measures the spokes of a vertex of the round.
+void LevelCoder::measure_spokes(std::size_t i) {
+  for (const Index star : vertices_.stars_of(i)) {
+    const std::span<const Index> faces = stars_.star(star);
+    for (const Index face : faces) measure_edge(3 * face);
+    if (!stars_.stars[star].closed) measure_edge(3 * faces.back() + 2);
+  }
 }
 
 /// The middle of what a loose vertex's faces stand on; without any, where the vertex before it lies.
@@ -357,6 +387,8 @@ bool LevelCoder::code_loose_vertex(BitCoder& coder, LooseVertex& vertex) {
   stars_.faces.insert(stars_.faces.end(), fine.begin(), fine.end());
   end_star(static_cast<Index>(positions_.size()), false, true);
   positions_.push_back(vertex.position);
+  for (const Index face : fine)
+    for (Index h = 3 * face; h < 3 * face + 3; ++h) measure_edge(h);
   vertices_.stars.push_back(static_cast<Index>(stars_.stars.size() - 1));
   vertices_.star_end.push_back(static_cast<Index>(vertices_.stars.size()));
   return coder.goes_on();

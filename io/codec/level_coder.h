@@ -162,6 +162,9 @@ class LevelCoder {
   bool code_flag(BitCoder& coder, std::uint32_t which, bool is);
   std::uint64_t corners_left() const;
   Vec3i guess_loose(std::span<const Index> fine) const;
+  void measure_edge(Index half);
+  void measure_edges();
+  void measure_spokes(std::size_t i);
   bool move(BitCoder& coder, Index vertex, Index half, Index star, std::span<const Vec3i> targets);
 
   LevelLimits limits_;
@@ -183,6 +186,8 @@ class LevelCoder {
   std::vector<std::uint8_t> moved_;  // by vertex: whether it lies where it stays up to the end of the stage
   std::size_t unmoved_count_ = 0;
   std::uint64_t move_count_ = 0;
+  std::vector<Index> moved_faces_;  // that have had a corner moved since the last round's patches
+  bool are_all_changed_ = true;     // since then
 
   RoundPatches patches_;
   std::vector<CodedMove> moves_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace lodestone::detail {
 namespace {
@@ -69,22 +70,28 @@ void MixedPatchModel::look_at_faces(const PatchWalk& walk) {
   flats_.resize(3 * face_count);
   asked_.assign(3 * face_count, 0);
   looks_.resize(face_count);
-  for (const Index f : walk.changed) {
-    const Vec3i a = (*positions_)[mesh_->from(3 * f)];
-    Vec3i n = cross((*positions_)[mesh_->from(3 * f + 1)] - a, (*positions_)[mesh_->from(3 * f + 2)] - a);
-    const int shift = shorten(n, 30);
-    sum_of_face_logs_ -= face_logs_[f];
-    face_logs_[f] = static_cast<std::int16_t>(log2_16(squared(n)) + 32 * shift);
-    sum_of_face_logs_ += face_logs_[f];
-    shorten(n, 15);
-    normals_[f] = {static_cast<std::int16_t>(n.x), static_cast<std::int16_t>(n.y), static_cast<std::int16_t>(n.z)};
-    forget(f);
-  }
+  for (const Index face : walk.changed.made) look_at_face(face);
+  for (const Index face : walk.changed.moved) look_at_face(face);
+  for (Index face = 0; face < face_count && walk.changed.are_all; ++face) look_at_face(face);
+  asked_.assign(3 * face_count, 0);
   // Neighbours and seams may be others elsewhere, too.
   if (join_count_ == mesh_->join_count() && has_seams_ == walk.has_seams) return;
   join_count_ = mesh_->join_count();
   has_seams_ = walk.has_seams;
   looks_.assign(face_count, {});
+}
+
+void MixedPatchModel::look_at_face(Index face) {
+  if (std::exchange(asked_[3 * face], std::uint8_t{1}) != 0) return;  // several times among the changed ones
+  const Vec3i a = (*positions_)[mesh_->from(3 * face)];
+  Vec3i n = cross((*positions_)[mesh_->from(3 * face + 1)] - a, (*positions_)[mesh_->from(3 * face + 2)] - a);
+  const int shift = shorten(n, 30);
+  sum_of_face_logs_ -= face_logs_[face];
+  face_logs_[face] = static_cast<std::int16_t>(log2_16(squared(n)) + 32 * shift);
+  sum_of_face_logs_ += face_logs_[face];
+  shorten(n, 15);
+  normals_[face] = {static_cast<std::int16_t>(n.x), static_cast<std::int16_t>(n.y), static_cast<std::int16_t>(n.z)};
+  forget(face);
 }
 
 /// Forgets what was seen of a face and its neighbours.
@@ -103,7 +110,7 @@ const MixedPatchModel::Look& MixedPatchModel::look_at(const PatchWalk& walk, Ind
   int longest = 0, lengths = 0, areas = 0, neighbours = 0;
   for (Index k = 0; k < 3; ++k) {
     const Index h = 3 * face + k, twin = mesh_->twin(h);
-    const int length = walk.edge_logs[h];
+    const int length = mesh_->edge_log(h);
     lengths += length;
     longest = std::max(longest, length);
     if (twin == kNoIndex) continue;
@@ -199,12 +206,12 @@ bool MixedPatchModel::code_edge(BitCoder& coder, const PatchWalk& walk, std::siz
   const Index half = walk.polygon[i], twin = mesh_->twin(half), face = face_of_corner(half),
               beyond = face_of_corner(twin);
   std::uint32_t plain = 0, patched = 0;
-  const int length = walk.edge_logs[half];
+  const int length = mesh_->edge_log(half);
   int lengths = walk.lengths - length;
   for (const Index h : {next_corner(twin), previous_corner(twin)}) {
     plain += walk.state_of(h) == PatchWalk::kPlain ? 1 : 0;
     patched += walk.state_of(h) == PatchWalk::kPatch ? 1 : 0;
-    lengths += walk.edge_logs[h];
+    lengths += mesh_->edge_log(h);
   }
   const Index apex = mesh_->apex(twin);
   const auto corners = static_cast<std::uint32_t>(std::min<std::size_t>(walk.polygon.size() - 3, kCorners - 1));

@@ -44,6 +44,7 @@ class MixedPatchModel final : public PatchModel {
   };
 
   void look_at_faces(const PatchWalk& walk);
+  void look_at_face(Index face);
   void forget(Index face);
   const Look& look_at(const PatchWalk& walk, Index face);
   std::uint32_t size_of(Index face) const;

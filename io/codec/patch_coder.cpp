@@ -22,56 +22,6 @@ enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 PatchCoder::PatchCoder(bool is_fast)
     : model_(PatchModel::make(is_fast)), borders_({kBorders}, 1) {}
 
-void PatchCoder::note_move(const PatchMesh& mesh, Index vertex, Index half) {
-  if (half == kNoIndex) return;
-  const Index degree = mesh.degree(vertex);
-  Index found = 0, at = half;
-  do {
-    moved_.push_back(face_of_corner(at));
-    ++found;
-    at = mesh.twin(previous_corner(at));
-  } while (at != half && at != kNoIndex && found < degree);
-  if (at == kNoIndex)
-    for (at = mesh.twin(half); at != kNoIndex && found < degree; at = mesh.twin(next_corner(at)), ++found)
-      moved_.push_back(face_of_corner(at));
-  if (found < degree) scattered_.push_back(vertex);
-}
-
-void PatchCoder::add_changed(Index face) {
-  if (walk_.states[face] == PatchWalk::kIsSeen) return;
-  walk_.states[face] = PatchWalk::kIsSeen;
-  walk_.changed.push_back(face);
-}
-
-/// Finds the faces that were made in the round before, or have a vertex that has moved, and marks them as seen. Pre:
-/// none is.
-void PatchCoder::find_changed(std::span<const Index> made) {
-  walk_.changed.clear();
-  for (const Index face : made) add_changed(face);
-  for (const Index face : moved_) add_changed(face);
-  moved_.clear();
-  if (walk_.round > 1 && scattered_.empty()) return;
-  std::vector<std::uint8_t> is_moved(mesh().vertex_count(), walk_.round > 1 ? 0 : 1);
-  for (const Index vertex : scattered_) is_moved[vertex] = 1;
-  scattered_.clear();
-  for (Index h = 0; h < 3 * mesh().face_count(); ++h)
-    if (is_moved[mesh().from(h)] != 0) add_changed(face_of_corner(h));
-}
-
-/// Finds the edges' lengths of the faces that have changed. Those across which a face is as it was are known.
-void PatchCoder::find_edge_logs() {
-  walk_.edge_logs.resize(3 * mesh().face_count());
-  for (const Index face : walk_.changed) {
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-      const Index other = mesh().twin(h);
-      const bool is_known = other != kNoIndex && walk_.states[face_of_corner(other)] == PatchWalk::kOpen;
-      const auto edge = [&] { return (*walk_.positions)[mesh().from(h)] - (*walk_.positions)[mesh().to(h)]; };
-      walk_.edge_logs[h] = is_known ? walk_.edge_logs[other] : static_cast<std::int16_t>(log2_16(squared(edge())));
-    }
-    walk_.states[face] = PatchWalk::kOpen;  // known now
-  }
-}
-
 bool PatchCoder::code_border(BitCoder& coder, std::uint32_t what, bool yes) {
   return borders_.code(coder, yes ? 1 : 0, std::array<std::uint32_t, 1>{what}, 0) != 0;
 }
@@ -107,7 +57,7 @@ void PatchCoder::grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundP
   walk_.faces.assign(1, seed);
   decide(seed, PatchWalk::kPatch);
   walk_.lengths = 0;
-  for (const Index h : polygon) walk_.lengths += walk_.edge_logs[h];
+  for (const Index h : polygon) walk_.lengths += mesh().edge_log(h);
   walk_.crossed = 0;
   model_->change_polygon(walk_);
   std::size_t closing = kNoIndex;
@@ -141,7 +91,7 @@ void PatchCoder::go_on(std::size_t i) {
   decide(beyond, PatchWalk::kPatch);
   walk_.crossed += walk_.is_seam(half) ? 1 : 0;
   walk_.faces.push_back(beyond);
-  walk_.lengths += walk_.edge_logs[next_corner(twin)] + walk_.edge_logs[previous_corner(twin)] - walk_.edge_logs[half];
+  walk_.lengths += mesh().edge_log(next_corner(twin)) + mesh().edge_log(previous_corner(twin)) - mesh().edge_log(half);
   walk_.polygon[i] = next_corner(twin);
   const auto after = static_cast<std::ptrdiff_t>(i) + 1;
   walk_.polygon.insert(walk_.polygon.begin() + after, previous_corner(twin));
@@ -204,14 +154,13 @@ void PatchCoder::code_ears(BitCoder& coder, const PatchPlan* plan, RoundPatches&
 }
 
 bool PatchCoder::code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, const GridPoints& positions,
-                      std::uint32_t round, std::span<const Index> made, const PatchPlan* plan, RoundPatches& patches) {
+                      std::uint32_t round, const ChangedFaces& changed, const PatchPlan* plan, RoundPatches& patches) {
   walk_.mesh = &mesh;
   walk_.positions = &positions;
   walk_.round = round;
   walk_.has_seams = has_seams;
   walk_.states.assign(mesh.face_count(), PatchWalk::kOpen);
-  find_changed(made);
-  find_edge_logs();
+  walk_.changed = changed;
   model_->start(walk_);
   patches.patches.clear();
   patches.polygons.clear();

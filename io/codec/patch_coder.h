@@ -47,21 +47,14 @@ class PatchCoder {
  public:
   explicit PatchCoder(bool is_fast);
 
-  /// Notes that a vertex lies elsewhere than in the round before. `half`: a half-edge that leaves it; kNoIndex where none
-  /// does.
-  void note_move(const PatchMesh& mesh, Index vertex, Index half);
-
   /// Codes a round's patches; a reader passes no plan. Without seams none are looked for. False where what is read is
   /// no round. Rounds are numbered from 1 on; what faces look like is remembered from one to the next, but of those that
-  /// were `made` in the round before.
+  /// have changed.
   bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, const GridPoints& positions,
-            std::uint32_t round, std::span<const Index> made, const PatchPlan* plan, RoundPatches& patches);
+            std::uint32_t round, const ChangedFaces& changed, const PatchPlan* plan, RoundPatches& patches);
 
  private:
   const PatchMesh& mesh() const { return *walk_.mesh; }
-  void find_changed(std::span<const Index> made);
-  void add_changed(Index face);
-  void find_edge_logs();
   void walk(BitCoder& coder, const PatchPlan* plan, Index count, RoundPatches& patches);
   void grow(BitCoder& coder, Index seed, const PatchPlan* plan, RoundPatches& patches);
   void go_on(std::size_t i);
@@ -77,8 +70,6 @@ class PatchCoder {
   std::unique_ptr<PatchModel> model_;
   BitMixer<1> borders_;
   NumberCoder counts_;
-  std::vector<Index> moved_;      // faces of vertices that have moved since the last round
-  std::vector<Index> scattered_;  // such vertices whose faces do not all hang together
 
   // Of the round at hand.
   PatchWalk walk_;

@@ -17,6 +17,7 @@ void PatchMesh::start(std::span<const Index> corners, std::span<const Index> wed
   halves_.clear();
   for (const Index vertex : corners) halves_.push_back({vertex, kNoIndex});
   wedges_.assign(wedges.begin(), wedges.end());
+  edge_logs_.assign(corners.size(), 0);
   faces_.clear();
   for (const Index group : groups) faces_.push_back({group, 0});
   degree_.assign(vertex_count, 0);
@@ -69,7 +70,8 @@ void PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> fa
   outer_.clear();
   for (const Index half : polygon) {
     const Index next = next_corner(half);
-    outer_.push_back({from(half), from(next), twin(half), wedge(half), wedge(next), group(face_of_corner(half))});
+    outer_.push_back({from(half), from(next), twin(half), wedge(half), wedge(next), group(face_of_corner(half)),
+                      edge_logs_[half]});
   }
   for (const Index face : faces)
     for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[from(h)];
@@ -77,7 +79,8 @@ void PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> fa
 }
 
 void PatchMesh::add_ear(Index half, Index vertex, std::uint32_t round, std::vector<Index>& stars) {
-  outer_.assign(1, {to(half), from(half), half, wedge(next_corner(half)), wedge(half), group(face_of_corner(half))});
+  outer_.assign(1, {to(half), from(half), half, wedge(next_corner(half)), wedge(half), group(face_of_corner(half)),
+                    edge_logs_[half]});
   place_star(false, {}, vertex, round, stars);
 }
 
@@ -101,6 +104,7 @@ void PatchMesh::reserve(std::size_t more) {
   const std::size_t faces = face_count_ + more;
   if (faces <= faces_.size()) return;
   halves_.resize(3 * faces);
+  edge_logs_.resize(3 * faces);
   wedges_.resize(3 * faces);
   faces_.resize(faces);
 }
@@ -123,6 +127,7 @@ void PatchMesh::place_star(bool closed, std::span<const Index> faces, Index vert
     wedges_[first] = kNoIndex;
     wedges_[first + 1] = outer.from_wedge;
     wedges_[first + 2] = outer.to_wedge;
+    edge_logs_[first + 1] = outer.log;
     faces_[star[i]] = {outer.group, round};
     if (outer.twin != kNoIndex) halves_[outer.twin].twin = first + 1;
     ++degree_[outer.from];

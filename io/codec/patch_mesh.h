@@ -27,6 +27,28 @@ class PatchMesh {
   Index degree(Index vertex) const { return degree_[vertex]; }
   /// In which round a face was made last.
   std::uint32_t made_in(Index face) const { return faces_[face].made_in; }
+  /// 16 · log2 of an edge's length, squared, as it was set last; of the outer edges of stars that of the edges there.
+  int edge_log(Index half) const { return edge_logs_[half]; }
+  /// Sets it on both sides.
+  void set_edge_log(Index half, int log) {
+    edge_logs_[half] = static_cast<std::int16_t>(log);
+    if (twin(half) != kNoIndex) edge_logs_[twin(half)] = edge_logs_[half];
+  }
+  /// Calls `visit(half)` for the half-edges that leave a vertex, of the faces that hang together with that of one of
+  /// them. False where the vertex has more faces.
+  template <class Visit>
+  bool visit_faces(Index half, const Visit& visit) const {
+    const Index count = degree(from(half));
+    Index found = 0, at = half;
+    do {
+      visit(at);
+      ++found;
+      at = twin(previous_corner(at));
+    } while (at != half && at != kNoIndex && found < count);
+    if (at == kNoIndex)
+      for (at = twin(half); at != kNoIndex && found < count; at = twin(at), ++found) visit(at = next_corner(at));
+    return found == count;
+  }
   Index wedge(Index corner) const { return wedges_[corner]; }
   Index group(Index face) const { return faces_[face].group; }
   /// Whether wedges or groups differ on the sides of an edge; not at borders.
@@ -78,6 +100,7 @@ class PatchMesh {
   };
   struct Outer {
     Index from, to, twin, from_wedge, to_wedge, group;
+    std::int16_t log;
   };
   void place_star(bool closed, std::span<const Index> faces, Index vertex, std::uint32_t round,
                   std::vector<Index>& stars);
@@ -91,6 +114,7 @@ class PatchMesh {
   std::size_t face_count_ = 0;
   std::vector<Half> halves_;
   std::vector<Index> wedges_;  // by corner
+  std::vector<std::int16_t> edge_logs_;
   std::vector<Face> faces_;
   std::vector<Index> degree_;
   std::uint32_t join_count_ = 0;

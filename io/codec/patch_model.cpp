@@ -22,7 +22,7 @@ class CountedPatchModel final : public PatchModel {
     int longest = 0, lengths = 0;
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
       states += kStateSteps[walk.state_of(h)];
-      const int length = walk.edge_logs[h];
+      const int length = walk.mesh->edge_log(h);
       lengths += length;
       longest = std::max(longest, length);
     }
@@ -32,9 +32,9 @@ class CountedPatchModel final : public PatchModel {
 
   bool code_edge(BitCoder& coder, const PatchWalk& walk, std::size_t i, bool goes_on) override {
     const Index half = walk.polygon[i], twin = walk.mesh->twin(half);
-    const int size = static_cast<int>(walk.polygon.size()), length = walk.edge_logs[half];
+    const int size = static_cast<int>(walk.polygon.size()), length = walk.mesh->edge_log(half);
     const int lengths =
-        walk.lengths - length + walk.edge_logs[next_corner(twin)] + walk.edge_logs[previous_corner(twin)];
+        walk.lengths - length + walk.mesh->edge_log(next_corner(twin)) + walk.mesh->edge_log(previous_corner(twin));
     const std::uint32_t relative = bucket(length - lengths / (size + 1), -32, 5, kRatios);
     const auto corners = static_cast<std::uint32_t>(std::min(size - 3, kCorners - 1));
     return edges_[corners * kRatios + relative].code(coder, goes_on ? 1 : 0) != 0;

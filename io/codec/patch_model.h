@@ -15,6 +15,13 @@
 
 namespace lodestone::detail {
 
+/// Faces that are not what they were in the round before.
+struct ChangedFaces {
+  std::span<const Index> made;
+  std::span<const Index> moved;  ///< those that had a corner moved
+  bool are_all = false;
+};
+
 /// A walk over the faces of a level: what it has decided, and the patch at hand.
 struct PatchWalk {
   enum State : std::uint8_t { kOpen, kPlain, kPatch };
@@ -25,9 +32,8 @@ struct PatchWalk {
   const GridPoints* positions = nullptr;
   std::uint32_t round = 0;
   bool has_seams = false;
-  std::vector<Index> changed;           // faces that were made, or had a corner moved, since the round before
-  std::vector<std::uint8_t> states;     // by face
-  std::vector<std::int16_t> edge_logs;  // by half-edge: of the length, squared
+  ChangedFaces changed;
+  std::vector<std::uint8_t> states;  // by face
 
   std::vector<Index> polygon;  // half-edges around the patch
   std::vector<Index> corners;  // the vertices that they leave
