@@ -54,7 +54,7 @@ class BitCoder {
   /// Sets who hears of a writer's steps; nobody with null.
   void set_listener(WorkListener* listener) { listener_ = listener; }
   /// Whether the work goes on: asked for every vertex and face, so that it ends soon.
-  bool goes_on() const { return listener_ == nullptr || listener_->step(); }
+  bool goes_on() const { return LODESTONE_RUNTIME_ONLY != 0 || listener_ == nullptr || listener_->step(); }
 
  private:
   template <bool kReads>

@@ -81,25 +81,20 @@ Result<void> CompactDecoder::read_errors(BitCoder& coder) {
 void CompactDecoder::add_moves() {
   if (levels_.moves().empty() && mesh_.move_begin.empty()) return;
   const std::size_t count = levels_.vertices().count(), first = mesh_.record_count() - count;
-  mesh_.move_begin.resize(first + 1, 0);  // where none has moved before
-  const auto record_of = [&](const CodedMove& move) {
-    return move.star == kNoIndex ? mesh_.record_count() - 1
-                                 : levels_.stars().stars[move.star].vertex - mesh_.base_vertex_count;
+  mesh_.move_begin.resize(first + count + 1, 0);  // where none has moved before
+  Index* const ends = mesh_.move_begin.data() + first + 1;  // by record of the round
+  const auto end_of = [&](const CodedMove& move) -> Index& {
+    return ends[move.star == kNoIndex
+                    ? count - 1
+                    : levels_.stars().stars[move.star].vertex - mesh_.base_vertex_count - static_cast<Index>(first)];
   };
-  const auto comes_before = [&](const CodedMove& a, const CodedMove& b) { return record_of(a) < record_of(b); };
-  std::span<const CodedMove> moves = levels_.moves();
-  std::vector<CodedMove> sorted;
-  if (!std::is_sorted(moves.begin(), moves.end(), comes_before)) {  // where sheets meet
-    sorted.assign(moves.begin(), moves.end());
-    std::stable_sort(sorted.begin(), sorted.end(), comes_before);
-    moves = sorted;
-  }
-  auto at = moves.begin();
-  for (std::size_t record = first; record < mesh_.record_count(); ++record) {
-    for (; at != moves.end() && record_of(*at) == record; ++at)
-      mesh_.moves.push_back({at->vertex, header_.place(at->from), header_.place(at->to)});
-    mesh_.move_begin.push_back(static_cast<Index>(mesh_.moves.size()));
-  }
+  for (const CodedMove& move : levels_.moves()) ++end_of(move);
+  auto begin = static_cast<Index>(mesh_.moves.size());
+  for (std::size_t i = 0; i < count; ++i) begin += std::exchange(ends[i], begin);
+  mesh_.moves.resize(begin);
+  // Where a record's begin moves to where they end.
+  for (const CodedMove& move : levels_.moves())
+    mesh_.moves[end_of(move)++] = {move.vertex, header_.place(move.from), header_.place(move.to)};
 }
 
 /// Adds the positions of the newest vertices and the attributes of the newest wedges.

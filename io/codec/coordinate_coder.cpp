@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <utility>
 
 namespace lodestone::detail {
 namespace {
@@ -36,7 +37,10 @@ Coordinates take_apart(const Ring& ring, std::int64_t normal_variance) {
     return product(normal, normal_variance) + ((across * kRoundness + ring.spread[i][j] * (kWhole - kRoundness)) >> 8);
   };
   Coordinates c;
-  std::stable_sort(c.order.begin(), c.order.end(), [&](int i, int j) { return std::abs(n[i]) < std::abs(n[j]); });
+  const auto put_in_order = [&](std::size_t i) {
+    if (std::abs(n[c.order[i]]) > std::abs(n[c.order[i + 1]])) std::swap(c.order[i], c.order[i + 1]);
+  };
+  for (const std::size_t i : {0, 1, 0}) put_in_order(i);
   const auto [x, y, z] = c.order;
   const std::int64_t xy = covariance(x, y), xz = covariance(x, z);
   c.variance[0] = std::max(covariance(x, x), kLeastVariance);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "codec/compact_layout.h"
 
@@ -193,12 +194,9 @@ void LevelCoder::end_star(Index vertex, bool closed, bool is_loose) {
 /// Ears come first: patches may move the faces that they hang on.
 void LevelCoder::add_stars() {
   auto next = static_cast<Index>(positions_.size());
-  std::vector<Index> first_star;
   const auto vertex_of_next = [&] {
     const auto i = static_cast<Index>(stars_.stars.size());
-    if (joined_[i] != i) return stars_.stars[joined_[i]].vertex;
-    first_star.push_back(i);
-    return next++;
+    return joined_[i] != i ? stars_.stars[joined_[i]].vertex : next++;
   };
   mesh_.reserve(patches_.ears.size() + patches_.polygons.size() - patches_.faces.size());
   for (const Index half : patches_.ears) {
@@ -221,21 +219,20 @@ void LevelCoder::add_stars() {
     polygon_begin = patch.polygon_end;
     face_begin = patch.face_end;
   }
-  order_stars(first_star);
+  order_stars(next - positions_.size());
 }
 
-/// Puts together the stars of each vertex.
-void LevelCoder::order_stars(std::span<const Index> first_star) {
-  vertices_.stars.resize(stars_.stars.size());
-  for (Index i = 0; i < vertices_.stars.size(); ++i) vertices_.stars[i] = i;
-  if (first_star.size() < vertices_.stars.size())
-    std::stable_sort(vertices_.stars.begin(), vertices_.stars.end(),
-                     [&](Index a, Index b) { return stars_.stars[a].vertex < stars_.stars[b].vertex; });
-  for (Index i = 0; i < vertices_.stars.size(); ++i) {
-    const bool is_last = i + 1 == vertices_.stars.size() ||
-                         stars_.stars[vertices_.stars[i]].vertex != stars_.stars[vertices_.stars[i + 1]].vertex;
-    if (is_last) vertices_.star_end.push_back(i + 1);
-  }
+/// Puts together the stars of each of so many new vertices.
+void LevelCoder::order_stars(std::size_t count) {
+  const auto first = static_cast<Index>(positions_.size());
+  std::vector<Index>& ends = vertices_.star_end;
+  ends.assign(count, 0);
+  for (const NewStars::Star& star : stars_.stars) ++ends[star.vertex - first];
+  Index begin = 0;
+  for (Index& end : ends) begin += std::exchange(end, begin);
+  vertices_.stars.resize(begin);
+  // Where a vertex's begin moves to where they end.
+  for (Index i = 0; i < begin; ++i) vertices_.stars[ends[stars_.stars[i].vertex - first]++] = i;
 }
 
 /// Adds the sector of a star that nothing cuts, with all coarse faces in it: most are of that kind. False where there

@@ -154,7 +154,7 @@ class LevelCoder {
  private:
   void add_stars();
   void end_star(Index vertex, bool closed, bool is_loose);
-  void order_stars(std::span<const Index> first_star);
+  void order_stars(std::size_t count);
   bool add_whole(std::size_t star);
   bool split(std::size_t star);
   bool end_vertex();
