@@ -33,7 +33,7 @@ constexpr std::array<std::int16_t, 4096> make_odds() {
 }
 constexpr std::array<std::int16_t, 4096> kOdds = make_odds();
 
-constexpr int kWeightBits = 13;         // fractional: weights lie within 4
+constexpr int kWeightBits = 13;       // fractional: weights lie within 4
 constexpr std::size_t kSlowest = 30;  // a counter forgets as an average over this many bits does
 
 constexpr int kWeightsSettle = 60;  // bits after which weights are learnt more slowly

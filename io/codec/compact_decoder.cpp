@@ -81,7 +81,7 @@ Result<void> CompactDecoder::read_errors(BitCoder& coder) {
 void CompactDecoder::add_moves() {
   if (levels_.moves().empty() && mesh_.move_begin.empty()) return;
   const std::size_t count = levels_.vertices().count(), first = mesh_.record_count() - count;
-  mesh_.move_begin.resize(first + count + 1, 0);  // where none has moved before
+  mesh_.move_begin.resize(first + count + 1, 0);            // where none has moved before
   Index* const ends = mesh_.move_begin.data() + first + 1;  // by record of the round
   const auto end_of = [&](const CodedMove& move) -> Index& {
     return ends[move.star == kNoIndex

@@ -12,10 +12,10 @@
 namespace lodestone::detail {
 
 // In functions they would be copied to the stack.
-inline constexpr std::array<std::uint8_t, 64> kLogs = {
-    0,  1,  1,  1,  2,  2,  2,  3,  3,  3,  4,  4,  4,  4,  5,  5,  5,  6,  6,  6,  6,  7,
-    7,  7,  7,  8,  8,  8,  9,  9,  9,  9,  9,  10, 10, 10, 10, 11, 11, 11, 11, 12, 12, 12,
-    12, 12, 13, 13, 13, 13, 13, 14, 14, 14, 14, 14, 15, 15, 15, 15, 15, 16, 16, 16};
+inline constexpr std::array<std::uint8_t, 64> kLogs = {0,  1,  1,  1,  2,  2,  2,  3,  3,  3,  4,  4,  4,  4,  5,  5,
+                                                       5,  6,  6,  6,  6,  7,  7,  7,  7,  8,  8,  8,  9,  9,  9,  9,
+                                                       9,  10, 10, 10, 10, 11, 11, 11, 11, 12, 12, 12, 12, 12, 13, 13,
+                                                       13, 13, 13, 14, 14, 14, 14, 14, 15, 15, 15, 15, 15, 16, 16, 16};
 inline constexpr std::array<std::uint16_t, 16> kPowers = {4096, 4277, 4467, 4664, 4871, 5087, 5312, 5547,
                                                           5793, 6049, 6317, 6597, 6889, 7194, 7512, 7845};
 
@@ -34,8 +34,8 @@ constexpr std::int64_t exp2_16(int x) {
   return static_cast<std::int64_t>(std::uint64_t{kPowers[x % 16]} << (x / 16) >> 12U);
 }
 
-/// Returns the square root, rounded down. Floats only find where to look; up to 2^52 the next number is too far from what
-/// they find to be taken for it.
+/// Returns the square root, rounded down. Floats only find where to look; up to 2^52 the next number is too far from
+/// what they find to be taken for it.
 inline std::uint32_t square_root(std::uint64_t x) {
   if (x < std::uint64_t{1} << 52U)
     return static_cast<std::uint32_t>(std::sqrt(static_cast<double>(static_cast<std::int64_t>(x))));

@@ -338,8 +338,7 @@ bool LevelCoder::code_points(BitCoder& coder, std::span<const Vec3i> given) {
   const auto star_of = [&](std::size_t i) { return vertices_.stars_of(i).front(); };
   for (std::size_t i = 0; i < count; ++i) {
     const Index star = star_of(i);
-    positions_.set(first + i,
-                   ShapeCoder::guess(mesh_, stars_.star(star), stars_.stars[star].closed, positions_));
+    positions_.set(first + i, ShapeCoder::guess(mesh_, stars_.star(star), stars_.stars[star].closed, positions_));
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Index star = star_of(i);

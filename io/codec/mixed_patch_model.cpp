@@ -105,7 +105,6 @@ const MixedPatchModel::Look& MixedPatchModel::look_at(const PatchWalk& walk, Ind
   Look& look = looks_[face];
   if (look.is_known) return look;
   look = {};
-  look.is_known = true;
   std::uint32_t seams = 0;
   int longest = 0, lengths = 0, areas = 0, neighbours = 0;
   for (Index k = 0; k < 3; ++k) {
@@ -115,16 +114,17 @@ const MixedPatchModel::Look& MixedPatchModel::look_at(const PatchWalk& walk, Ind
     longest = std::max(longest, length);
     if (twin == kNoIndex) continue;
     seams += walk.is_seam(h) ? 1 : 0;
-    areas += face_logs_[face_of_corner(twin)];
+    const Index beyond = face_of_corner(twin);
+    areas += face_logs_[beyond];
     ++neighbours;
-    const auto [here, beyond] = measure_flatness(h);
-    flats_[h] = static_cast<std::uint8_t>(here);
-    if (here != beyond) look.uneven = static_cast<std::uint8_t>(look.uneven | 1U << k);
+    if (!looks_[beyond].is_known) measure_flatness(h);
+    if (flats_[h] != flats_[twin]) look.uneven = static_cast<std::uint8_t>(look.uneven | 1U << k);
   }
   if (neighbours > 0)
     look.relative = static_cast<std::uint8_t>(bucket(face_logs_[face] - areas / neighbours, -48, 8, kShapes));
   look.shape = static_cast<std::uint8_t>(bucket(longest - lengths / 3, 0, 4, kShapes));
   look.seams = static_cast<std::uint8_t>(std::min(seams, kFaceSeams - 1));
+  look.is_known = true;
   return look;
 }
 
@@ -134,22 +134,25 @@ std::uint32_t MixedPatchModel::size_of(Index face) const {
 
 /// 7 for flat edges, less by one for each doubling of the angle's tangent, 0 from a right angle on and at borders: as
 /// seen from a half-edge, and from its twin. These are mostly alike, but for rounding.
-std::array<std::uint32_t, 2> MixedPatchModel::measure_flatness(Index half) const {
+void MixedPatchModel::measure_flatness(Index half) {
   const auto normal = [&](Index h) {
     const Normal& n = normals_[face_of_corner(h)];
     return Vec3i{n.x, n.y, n.z};
   };
-  const Vec3i a = normal(half), b = normal(mesh_->twin(half));
+  const Index twin = mesh_->twin(half);
+  const Vec3i a = normal(half), b = normal(twin);
+  flats_[half] = flats_[twin] = 0;
   const std::int64_t cosine = dot(a, b);
-  if (cosine <= 0) return {0, 0};
+  if (cosine <= 0) return;
   const Vec3i sine = cross(a, b);
   const int log_cosine = 2 * log2_16(static_cast<std::uint64_t>(cosine));
   const auto flatness = [&](const Vec3i& s) {
     const Vec3i quarter = {s.x >> 2, s.y >> 2, s.z >> 2};
     const int log_tangent = log2_16(squared(quarter) + 1) + 64 - log_cosine;
-    return bucket(-log_tangent, 0, 32, kFlats);
+    return static_cast<std::uint8_t>(bucket(-log_tangent, 0, 32, kFlats));
   };
-  return {flatness(sine), flatness(sine * -1)};
+  flats_[half] = flatness(sine);
+  flats_[twin] = flatness(sine * -1);
 }
 
 /// The flatness of a face's k-th edge, which is not a border: as seen from the side that asked for it first in the

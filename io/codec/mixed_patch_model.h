@@ -48,7 +48,7 @@ class MixedPatchModel final : public PatchModel {
   void forget(Index face);
   const Look& look_at(const PatchWalk& walk, Index face);
   std::uint32_t size_of(Index face) const;
-  std::array<std::uint32_t, 2> measure_flatness(Index half) const;
+  void measure_flatness(Index half);
   std::uint32_t flatness(const Look& look, Index face, Index k);
 
   BitMixer<7> faces_;
@@ -58,7 +58,7 @@ class MixedPatchModel final : public PatchModel {
   std::vector<Normal> normals_;          // by face
   std::vector<std::int16_t> face_logs_;  // by face: of the area, squared
   std::int64_t sum_of_face_logs_ = 0;
-  std::vector<std::uint8_t> flats_;  // by half-edge, where its face's look is known: see measure_flatness
+  std::vector<std::uint8_t> flats_;  // by half-edge, where a look on either side is known: see measure_flatness
   std::vector<Look> looks_;          // by face
   std::uint32_t join_count_ = 0;     // of the mesh, in the round before
   bool has_seams_ = false;           // the same

@@ -65,7 +65,7 @@ std::int64_t NumberCoder::code_mixed(BitCoder& coder, std::int64_t number, const
   while (end - begin > 1) {
     const std::int64_t middle = begin + (end - begin) / 2;
     const std::array<std::uint32_t, 2> contexts = {step * 4 + static_cast<std::uint32_t>(std::min(level, 3)),
-                                       step * kScales + log_scale};
+                                                   step * kScales + log_scale};
     int upper = distance >= middle ? 1 : 0;
     if (level < 2)
       upper = mixers_->rest.code(coder, upper, contexts, static_cast<std::uint32_t>(level));

@@ -19,8 +19,7 @@ enum Border : std::uint32_t { kCloses, kHasEars, kIsEar, kBorders };
 
 }  // namespace
 
-PatchCoder::PatchCoder(bool is_fast)
-    : model_(PatchModel::make(is_fast)), borders_({kBorders}, 1) {}
+PatchCoder::PatchCoder(bool is_fast) : model_(PatchModel::make(is_fast)), borders_({kBorders}, 1) {}
 
 bool PatchCoder::code_border(BitCoder& coder, std::uint32_t what, bool yes) {
   return borders_.code(coder, yes ? 1 : 0, std::array<std::uint32_t, 1>{what}, 0) != 0;

@@ -48,10 +48,10 @@ class PatchCoder {
   explicit PatchCoder(bool is_fast);
 
   /// Codes a round's patches; a reader passes no plan. Without seams none are looked for. False where what is read is
-  /// no round. Rounds are numbered from 1 on; what faces look like is remembered from one to the next, but of those that
-  /// have changed.
-  bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, const GridPoints& positions,
-            std::uint32_t round, const ChangedFaces& changed, const PatchPlan* plan, RoundPatches& patches);
+  /// no round. Rounds are numbered from 1 on; what faces look like is remembered from one to the next, but of those
+  /// that have changed.
+  bool code(BitCoder& coder, const PatchMesh& mesh, bool has_seams, const GridPoints& positions, std::uint32_t round,
+            const ChangedFaces& changed, const PatchPlan* plan, RoundPatches& patches);
 
  private:
   const PatchMesh& mesh() const { return *walk_.mesh; }

@@ -70,8 +70,8 @@ void PatchMesh::refine(std::span<const Index> polygon, std::span<const Index> fa
   outer_.clear();
   for (const Index half : polygon) {
     const Index next = next_corner(half);
-    outer_.push_back({from(half), from(next), twin(half), wedge(half), wedge(next), group(face_of_corner(half)),
-                      edge_logs_[half]});
+    outer_.push_back(
+        {from(half), from(next), twin(half), wedge(half), wedge(next), group(face_of_corner(half)), edge_logs_[half]});
   }
   for (const Index face : faces)
     for (Index h = 3 * face; h < 3 * face + 3; ++h) --degree_[from(h)];

@@ -91,8 +91,7 @@ void ShapeCoder::find_star(const PatchMesh& mesh, Index half) {
   }
 }
 
-Vec3i ShapeCoder::guess(const PatchMesh& mesh, std::span<const Index> star, bool closed,
-                        const GridPoints& positions) {
+Vec3i ShapeCoder::guess(const PatchMesh& mesh, std::span<const Index> star, bool closed, const GridPoints& positions) {
   const Vec3i first = positions[mesh.from(3 * star.front() + 1)];
   if (!closed) return divide(first + positions[mesh.to(3 * star.back() + 1)], 2);
   Vec3i sum;
