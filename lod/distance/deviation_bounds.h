@@ -8,15 +8,18 @@
 
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/mesh.h>
+#include <lodestone/core/progress.h>
 #include <lodestone/core/removal.h>
-#include <lodestone/lod/level_deviation.h>
+
+#include "distance/level_deviation.h"
+#include "distance/round_up.h"
 
 namespace lodestone::detail {
 
 /// Bounds the two-sided distance between the full mesh and the mesh after each removal.
 ///
 /// From time to time the mesh is measured. In between, each removal adds an upper bound of how far it moves the surface
-/// it replaces; the triangle inequality bounds the rest.
+/// it replaces; the triangle inequality bounds the rest, for the points at each face by themselves.
 class DeviationBounds {
  public:
   /// Measures whenever a share `step` of the faces has gone since the last time; never where it is 0.
@@ -40,41 +43,19 @@ class DeviationBounds {
   /// Frees what only further removals would need.
   void stop_measuring() {
     level_.reset();
-    since_measured_ = since_start_ = Chain(0);
+    moved_ = FaceReach(0);
   }
   /// One bound for each removal, in order.
   const std::vector<float>& bounds() const { return bound_; }
 
  private:
-  /// How far removals may have moved each face's points from where they were at some time.
-  struct Chain {
-    std::vector<float> moved;  // by face, mesh units
-    double largest = 0;
-
-    explicit Chain(std::size_t face_count) : moved(face_count, 0) {}
-    void add(const RemovalRecord& record, double displacement);
-    void add_vanished(std::span<const RemovalRecord> records, Index face, double reach);
-    void reset() {
-      std::fill(moved.begin(), moved.end(), 0.0F);
-      largest = 0;
-    }
-  };
-
-  static float round_up(double value);
   double bound() const;
-  template <class Visit>
-  void for_chains(const Visit& visit) {
-    visit(since_start_);
-    if (level_) visit(since_measured_);
-  }
-
   const Mesh* full_;
   double step_;
-  std::optional<LevelDeviation> level_;  // where it measures at all
+  std::optional<LevelDeviation> level_;  // where it measures at all; else
+  FaceReach moved_;                      // how far the full mesh's points are from where they were
+  FaceChanges last_change_;
   std::size_t measured_faces_;
-  Chain since_start_;
-  Chain since_measured_;   // empty where it does not measure: as since_start_
-  double measured_ = 0;    // bound of the last measured mesh
   bool vanished_ = false;  // whether a piece has since it was measured
   double last_ = 0;        // > 0 once nothing is left
   std::vector<float> bound_;

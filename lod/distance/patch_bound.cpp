@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
+// From this share of the limit on it is worth the while to leave out what of a face does not lie over the triangle: the
+// lower the bound, the longer it is of use.
+constexpr double kClipped = 0.5;
+
 /// For the line from p to q in the plane, by barycentric coordinates: how each of the triangle's corners lies to it,
 /// above 0 to its left.
 std::array<double, 3> corners_beside(const std::array<double, 4>& p, const std::array<double, 4>& q) {
@@ -234,7 +238,7 @@ bool PatchBound::take_across(const Frame& frame, Index face, const Points& point
 bool PatchBound::take(Index face) {
   const Points& points = last_.back().points;
   double height = std::max({std::abs(points[0].height()), std::abs(points[1].height()), std::abs(points[2].height())});
-  if (height > limit_) height = clipped_height(points);
+  if (height > kClipped * limit_) height = clipped_height(points);
   if (height > limit_) return false;
   height_ = std::max(height_, height);
   taken_in_[face] = run_;

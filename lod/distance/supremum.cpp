@@ -21,6 +21,10 @@ namespace {
 
 constexpr std::size_t kFacesOfStep = 256;  // looked at between two words about the progress
 
+// Parts of a face that is bounded by no patch seldom are until they are much smaller, and over large ones patches are
+// dear: one is looked for after so many halvings, and then after as many again.
+constexpr int kHalvingsToPatch = 3;
+
 using Corners = std::array<PartCorner, 3>;
 using Distances = std::array<double, 3>;  // From the three corners to one face.
 
@@ -122,12 +126,20 @@ void SurfaceBounds::lower(Index face, double bound, std::span<const Index> found
   if (bound >= faces[face]) return;
   faces[face] = bound;
   if (witnesses.empty()) return;
+  lowered[face] = true;
   Witnesses& witness = witnesses[face];
   witness = {};
   if (found.empty() || found.size() > witness.faces.size()) return;
   if (std::find(found.begin(), found.end(), kNoIndex) != found.end()) return;
   witness.faces.fill(found[0]);
   std::copy(found.begin(), found.end(), witness.faces.begin());
+}
+
+void SurfaceBounds::begin_anew(Index face) {
+  faces[face] = 0;
+  if (witnesses.empty()) return;
+  lowered[face] = true;
+  witnesses[face] = {};
 }
 
 SupremumSearch::SupremumSearch(const Mesh& from, TargetSurface& to, PatchBound& to_patch, SurfaceBounds& bounds)
@@ -188,9 +200,10 @@ bool SupremumSearch::query_one_vertex(Index face, Goal& goal) {
     const KnownDistance& known = bounds_.vertices[v];
     if (known.face != kNoIndex) hint = known.face;
     if (known.searched) continue;
-    if (vertex == kNoIndex || known.face == kNoIndex) vertex = v;
+    if (vertex == kNoIndex || known.face == kNoIndex || known.is_hint) vertex = v;
   }
   if (vertex == kNoIndex) return false;
+  if (bounds_.vertices[vertex].face != kNoIndex) hint = bounds_.vertices[vertex].face;
   const PartCorner nearest = query(Vec3(from_.positions[vertex]), hint, face, goal);
   bounds_.vertices[vertex] = {nearest.distance, nearest.face, true};
   return true;
@@ -229,7 +242,7 @@ Corners SupremumSearch::corners_of(Index face) const {
   for (Index i = 0; i < 3; ++i) {
     const Index vertex = from_.corner_vertex(3 * face + i);
     const KnownDistance& known = bounds_.vertices[vertex];
-    corners[i] = {Vec3(from_.positions[vertex]), known.distance, known.face};
+    corners[i] = {Vec3(from_.positions[vertex]), known.distance, known.is_hint ? kNoIndex : known.face};
   }
   return corners;
 }
@@ -258,17 +271,17 @@ void SupremumSearch::add_face(Index face, Goal& goal) {
   const Corners corners = corners_of(face);
   corners_.insert(corners_.end(), corners.begin(), corners.end());
   const double bound = bounds_.faces[face];
-  bounds_.faces[face] = 0;
-  if (!bounds_.witnesses.empty()) bounds_.witnesses[face] = {};
-  add_part({bound, {}, face}, {first, first + 1, first + 2}, goal);
+  bounds_.begin_anew(face);
+  add_part({bound, {}, face, 0}, {first, first + 1, first + 2}, goal);
 }
 
 void SupremumSearch::add_part(const Part& parent, const std::array<Index, 3>& corners, Goal& goal) {
   const Corners c = {corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]};
   double bound = std::min(parent.bound, bound_by_corners(c, goal));
-  if (bound > goal.threshold()) bound = std::min(bound, bound_by_patch(c, goal));
+  if (bound > goal.threshold() && parent.halvings % kHalvingsToPatch == kHalvingsToPatch - 1)
+    bound = std::min(bound, bound_by_patch(c, goal));
   if (bound > goal.threshold()) bound = std::min(bound, bound_by_centre(c, parent.face, goal));
-  const Part part{bound, corners, parent.face};
+  const Part part{bound, corners, parent.face, parent.halvings + 1};
   if (part.bound > goal.threshold()) {
     push(part);
   } else {

@@ -44,6 +44,7 @@ struct KnownDistance {
   double distance = kUnbounded;  ///< an upper bound; of the distance to `face`, too, where there is one
   Index face = kNoIndex;         ///< a face of the other surface no farther than that
   bool searched = false;         ///< no nearer face need be looked for
+  bool is_hint = false;          ///< of `face` nothing is known but that it is likely near
 };
 
 /// The faces of the other surface that a bound rests on; it holds for as long as all of them exist. None: unknown.
@@ -58,15 +59,19 @@ struct SurfaceBounds {
   std::vector<KnownDistance> vertices;  ///< one per vertex
   std::vector<double> faces;            ///< one per face: an upper bound of its points' distances
   std::vector<Witnesses> witnesses;     ///< of `faces`; may be empty: not wanted
+  std::vector<bool> lowered;            ///< by face, where witnesses are wanted: whether a search has lowered its bound
 
   SurfaceBounds() = default;
   SurfaceBounds(const Mesh& mesh, bool wants_witnesses)
       : vertices(mesh.vertex_count()),
         faces(mesh.face_count(), kUnbounded),
-        witnesses(wants_witnesses ? mesh.face_count() : 0) {}
+        witnesses(wants_witnesses ? mesh.face_count() : 0),
+        lowered(witnesses.size()) {}
   double maximum() const { return faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end()); }
   /// Lowers a face's bound; `found` are the faces that the new bound rests on.
   void lower(Index face, double bound, std::span<const Index> found);
+  /// Begins a face's bound anew, from 0 on: what it rests on will not be known.
+  void begin_anew(Index face);
 };
 
 /// A corner of a part of a triangle.
@@ -112,6 +117,7 @@ class SupremumSearch {
     double bound;
     std::array<Index, 3> corners;  // Into corners_.
     Index face;
+    int halvings;  // Of the face, to have the part.
   };
 
   using Corners = std::array<PartCorner, 3>;

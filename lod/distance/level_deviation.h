@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include <lodestone/core/connectivity.h>
+#include <lodestone/core/mesh.h>
+#include <lodestone/core/removal.h>
+#include <lodestone/lod/deviation.h>
+
+#include "distance/face_change.h"
+#include "distance/face_history.h"
+#include "distance/patch_bound.h"
+#include "distance/supremum.h"
+#include "distance/target_surface.h"
+
+namespace lodestone::detail {
+
+/// Bounds how far what removals leave of a mesh is from it, both ways, and measures that from time to time, each time
+/// starting from what was proved before.
+///
+/// The bound of a face of the original rests on some faces of the level. While these are there it stays, and where
+/// removals have taken them it has grown by no more than what they moved the surface there. So only what may be the
+/// maximum after that is looked at again. Faces of a level are named by those of the original whose places they have.
+class LevelDeviation {
+ public:
+  /// Pre: `original` outlives the object; no face has been removed. Cost: O(n).
+  LevelDeviation(const Mesh& original, const DeviationOptions& options);
+
+  /// Takes into account a record that was just done, and how far it moved the surface at most, mesh units.
+  void add(const RemovalRecord& record, double displacement);
+  /// Takes into account that a piece has vanished: all of it lies within `reach` of `face`, which is one of those left.
+  void add_vanished(std::span<const RemovalRecord> records, Index face, double reach);
+  /// The two-sided distance is no more, mesh units.
+  double bound() const;
+
+  /// Measures the two-sided maximum, narrowed as the options say; as `measure_maximum` does.
+  /// Pre: `current` is what the removals have left of the original, and has faces.
+  Deviation measure(const Connectivity& current);
+
+ private:
+  struct Level;
+
+  void carry(const Level& level);
+  void carry_vertices(const Level& level, std::span<const FaceHistory::Fate> fates);
+  void carry_faces(std::span<const Index> faces, std::span<const FaceHistory::Fate> fates);
+  SurfaceBounds place_vertices(const Level& level);
+  void keep(const Level& level, const SurfaceBounds& backward);
+
+  const Mesh& original_;
+  DeviationOptions options_;
+  double diagonal_;              // the original's
+  std::vector<Index> opposite_;  // of the original's corners
+  TargetSurface surface_;
+  PatchBound patch_;
+  std::vector<Index> face_at_;  // by the original's vertices, a face; kNoIndex: none
+  FaceHistory history_;
+  double measured_ = 0;     // the last time
+  FaceReach moved_;         // of the original's points: since then
+  FaceReach moved_in_all_;  // and since the begin
+
+  // Of the original's faces, to the level.
+  SurfaceBounds forward_;
+  std::vector<float> proved_;  // the bound when it was last looked at,
+  std::vector<Index> since_;   // and the period that began then
+
+  FaceReach backward_;  // of the level's faces, to the original
+
+  Vec3 farthest_point_;             // of the original, from the level when it was last measured
+  Index farthest_face_ = kNoIndex;  // of that level, from the original
+  double farthest_distance_ = 0;    // of farthest_face_
+};
+
+}  // namespace lodestone::detail
