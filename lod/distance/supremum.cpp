@@ -277,10 +277,15 @@ void SupremumSearch::add_face(Index face, Goal& goal) {
 
 void SupremumSearch::add_part(const Part& parent, const std::array<Index, 3>& corners, Goal& goal) {
   const Corners c = {corners_[corners[0]], corners_[corners[1]], corners_[corners[2]]};
-  double bound = std::min(parent.bound, bound_by_corners(c, goal));
+  PieceBound by_faces(c, to_, goal.threshold());
+  for (const PartCorner& corner : c) by_faces.try_face(corner.face);
+  double bound = std::min(parent.bound, by_faces.value());
   if (bound > goal.threshold() && parent.halvings % kHalvingsToPatch == kHalvingsToPatch - 1)
     bound = std::min(bound, bound_by_patch(c, goal));
-  if (bound > goal.threshold()) bound = std::min(bound, bound_by_centre(c, parent.face, goal));
+  if (bound > goal.threshold()) {
+    by_faces.try_face(face_at_centre(c, parent.face, goal));
+    bound = std::min(bound, by_faces.value());
+  }
   const Part part{bound, corners, parent.face, parent.halvings + 1};
   if (part.bound > goal.threshold()) {
     push(part);
@@ -290,14 +295,10 @@ void SupremumSearch::add_part(const Part& parent, const std::array<Index, 3>& co
 }
 
 /// At the corners several faces may be equally near, and the one that covers the part need not be the one found: the
-/// face nearest to the centre is tried as well.
-double SupremumSearch::bound_by_centre(const Corners& c, Index from_face, Goal& goal) {
+/// face nearest to the centre is worth trying as well.
+Index SupremumSearch::face_at_centre(const Corners& c, Index from_face, Goal& goal) {
   const Vec3 centre = (c[0].point + c[1].point + c[2].point) * (1.0 / 3.0);
-  const Index face = query(centre, c[0].face, from_face, goal).face;
-  PieceBound bound(c, to_, goal.threshold());
-  bound.try_face(face);
-  for (const PartCorner& corner : c) bound.try_face(corner.face);
-  return bound.value();
+  return query(centre, c[0].face, from_face, goal).face;
 }
 
 /// Halves a part across its longest edge.

@@ -126,7 +126,7 @@ class SupremumSearch {
   Corners corners_of(Index face) const;
   double bound_by_corners(const Corners& corners, const Goal& goal) const;
   double bound_by_patch(const Corners& corners, const Goal& goal);
-  double bound_by_centre(const Corners& corners, Index from_face, Goal& goal);
+  Index face_at_centre(const Corners& corners, Index from_face, Goal& goal);
   void visit_face(Index face, Goal& goal);
   bool query_one_vertex(Index face, Goal& goal);
   PartCorner query(const Vec3& point, Index hint, Index from_face, Goal& goal);
