@@ -22,7 +22,7 @@ using detail::text;
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kWritten[] = {"glb", "gltf", "obj", "ply", "json", "html"};
+constexpr std::string_view kWritten[] = {"glb", "gltf", "lods", "obj", "ply", "json", "html"};
 
 /// What ends like a file that is written means one, even where a folder has that name.
 bool ends_like_a_file(const fs::path& path) {

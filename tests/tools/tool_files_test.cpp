@@ -135,6 +135,8 @@ TEST_CASE("inputs that would become one file are refused, and no folder is left"
   check_fails({"build", a, a, "-o", out}, 1, "would both become");
   check_fails({"build", a, b, "-o", out, "--ratio", "2"}, 1, "would both become");
   check_fails({"build", a, "-o", out, "--ratio", "2"}, 1, "not a share");
+  for (const char* name : {"all.glb", "all.gltf", "all.lods", "all.obj", "all.ply"})
+    check_fails({"build", a, b, "-o", (folder / name).string()}, 1, "is a file's name");
   check_fails({"build", a, "-o", (folder / "missing").string() + "/x.glb"}, 4, "does not exist");
   CHECK(names_in(folder.path()) == Names{"a.obj", "x"});
 }
