@@ -17,6 +17,9 @@
 namespace lodestone::detail {
 namespace {
 
+// The lower a bound is, the longer it is of use.
+constexpr double kCloseFrom = 0.5;
+
 constexpr Index kNever = kNoIndex - 1;  // of a bound of which it is not known what it rests on
 
 float bound_kept(double bound) { return round_up(bound * kRoundingSlack); }
@@ -56,7 +59,7 @@ LevelDeviation::LevelDeviation(const Mesh& original, const DeviationOptions& opt
       diagonal_(bounding_box(original).diagonal()),
       opposite_(opposite_corners(original)),
       surface_(original, opposite_),
-      patch_(original, opposite_),
+      patch_(original, opposite_, kCloseFrom),
       face_at_(original.vertex_count(), kNoIndex),
       history_(original.face_count()),
       moved_(original.face_count()),
@@ -171,7 +174,7 @@ Deviation LevelDeviation::measure(const Connectivity& current) {
   SurfaceBounds backward = place_vertices(level);
   const std::vector<Index> level_opposite = opposite_corners(level.mesh);
   TargetSurface level_surface(level.mesh, level_opposite);
-  PatchBound level_patch(level.mesh, level_opposite);
+  PatchBound level_patch(level.mesh, level_opposite, kCloseFrom);
   SupremumSearch forward_search(original_, level_surface, level_patch, forward_);
   SupremumSearch backward_search(level.mesh, surface_, patch_, backward);
   Goal goal = goal_of(options_, std::max(diagonal_, bounding_box(level.mesh).diagonal()), 0);

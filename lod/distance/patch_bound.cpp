@@ -15,10 +15,6 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-// From this share of the limit on it is worth the while to leave out what of a face does not lie over the triangle: the
-// lower the bound, the longer it is of use.
-constexpr double kClipped = 0.5;
-
 /// For the line from p to q in the plane, by barycentric coordinates: how each of the triangle's corners lies to it,
 /// above 0 to its left.
 std::array<double, 3> corners_beside(const std::array<double, 4>& p, const std::array<double, 4>& q) {
@@ -68,8 +64,8 @@ std::vector<Index> opposite_corners(const Mesh& mesh) {
   return opposite;
 }
 
-PatchBound::PatchBound(const Mesh& surface, std::span<const Index> opposite)
-    : surface_(surface), opposite_(opposite), taken_in_(surface.face_count(), 0) {}
+PatchBound::PatchBound(const Mesh& surface, std::span<const Index> opposite, double close_from)
+    : surface_(surface), opposite_(opposite), close_from_(close_from), taken_in_(surface.face_count(), 0) {}
 
 PatchBound::Point PatchBound::Frame::project(const Vec3& p) const {
   const Vec3 d = p - centre;
@@ -238,7 +234,7 @@ bool PatchBound::take_across(const Frame& frame, Index face, const Points& point
 bool PatchBound::take(Index face) {
   const Points& points = last_.back().points;
   double height = std::max({std::abs(points[0].height()), std::abs(points[1].height()), std::abs(points[2].height())});
-  if (height > kClipped * limit_) height = clipped_height(points);
+  if (height > close_from_ * limit_) height = clipped_height(points);
   if (height > limit_) return false;
   height_ = std::max(height_, height);
   taken_in_[face] = run_;

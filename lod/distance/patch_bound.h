@@ -34,8 +34,9 @@ bool any_face_around(std::span<const Index> opposite, Index corner, const Visit&
 /// edges alone that enter the triangle, so that walls beyond an edge beside it are left out.
 class PatchBound {
  public:
-  /// Pre: both outlive the object; `opposite` are the surface's opposite_corners.
-  PatchBound(const Mesh& surface, std::span<const Index> opposite);
+  /// Pre: both outlive the object; `opposite` are the surface's opposite_corners. `close_from`: bounds are as close as
+  /// they can be from this share of their target on, and need only be below it where they are less; closer takes longer.
+  PatchBound(const Mesh& surface, std::span<const Index> opposite, double close_from = 1);
 
   /// Returns an upper bound of the distances from `triangle` to the surface, or infinity where this shows none that is
   /// at most `target`. The patch is looked for around the face `start`; gaps as narrow as `slack` are bridged.
@@ -86,6 +87,7 @@ class PatchBound {
 
   const Mesh& surface_;
   std::span<const Index> opposite_;
+  double close_from_;
   std::vector<Index> patch_;
   std::vector<Taken> last_, before_;     // Of the patch's faces: those taken last, and those it grows across.
   std::vector<std::uint16_t> taken_in_;  // By face: the last run that it was in the patch of, since these began anew.
