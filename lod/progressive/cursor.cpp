@@ -14,6 +14,15 @@ namespace lodestone {
 
 using detail::write_canonical;
 
+namespace {
+
+// Where index buffers are beyond what caches hold, the faces that a record overwrites are fetched so many records
+// ahead: they lie anywhere, and each would be waited for.
+constexpr std::size_t kManySlots = 500'000;
+constexpr std::size_t kAhead = 16;
+
+}  // namespace
+
 Cursor::Cursor(const ProgressiveMesh& mesh) : mesh_(&mesh), corners_(mesh.groups.size()) {
   for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
     corners_[g].reserve(3 * std::size_t{mesh.groups[g].face_count});
@@ -39,8 +48,25 @@ void Cursor::make_room() {
 void Cursor::seek(Index position) {
   position = std::min(position, static_cast<Index>(mesh_->record_count()));
   if (position > position_) make_room();
-  while (position_ < position) refine();
-  while (position_ > position) coarsen();
+  const bool fetches = mesh_->slots.size() > kManySlots;
+  while (position_ < position) {
+    if (fetches) fetch(position_ + kAhead);
+    refine();
+  }
+  while (position_ > position) {
+    if (fetches) fetch(position_ - kAhead);  // below 0 it wraps around to no record
+    coarsen();
+  }
+}
+
+/// Has the faces that a record overwrites brought near, if there is such a record.
+void Cursor::fetch(std::size_t record) const {
+  if (record >= mesh_->record_count()) return;
+  const Index first = mesh_->sector_begin[record], end = mesh_->sector_begin[record + 1];
+  if (first == end) return;
+  const Index* const corners = corners_[mesh_->sectors[first].group].data();  // most are of one group
+  for (std::uint64_t i = mesh_->slot_begin(first); i < mesh_->slot_begin(end); ++i)
+    __builtin_prefetch(corners + 3 * std::size_t{mesh_->slots[i]}, 1);
 }
 
 void Cursor::refine() {

@@ -35,6 +35,7 @@ class Cursor {
 
  private:
   void make_room();
+  void fetch(std::size_t record) const;
 
   const ProgressiveMesh* mesh_;
   Index position_ = 0;
