@@ -35,7 +35,8 @@ bool any_face_around(std::span<const Index> opposite, Index corner, const Visit&
 class PatchBound {
  public:
   /// Pre: both outlive the object; `opposite` are the surface's opposite_corners. `close_from`: bounds are as close as
-  /// they can be from this share of their target on, and need only be below it where they are less; closer takes longer.
+  /// they can be from this share of their target on, and need only be below it where they are less; closer takes
+  /// longer.
   PatchBound(const Mesh& surface, std::span<const Index> opposite, double close_from = 1);
 
   /// Returns an upper bound of the distances from `triangle` to the surface, or infinity where this shows none that is
