@@ -21,8 +21,11 @@ DeviationOptions measuring_options(const Progress& progress) {
 }  // namespace
 
 DeviationBounds::DeviationBounds(const Mesh& full, double step, const Progress& progress)
-    : full_(&full), step_(step), moved_(step > 0 ? 0 : full.face_count()), measured_faces_(full.face_count()) {
-  if (step > 0 && progress.add(0)) level_.emplace(full, measuring_options(progress));
+    : full_(&full), step_(step), moved_(0), measured_faces_(full.face_count()) {
+  if (step > 0 && progress.add(0))
+    level_.emplace(full, measuring_options(progress));
+  else
+    moved_ = FaceReach(full.face_count());
   bound_.reserve(full.vertex_count());
 }
 

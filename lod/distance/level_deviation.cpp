@@ -110,13 +110,16 @@ void LevelDeviation::carry(const Level& level) {
   }
 }
 
+/// A distance grows by what moved the face that it is to; where that has gone before, by the most that anything moved.
 void LevelDeviation::carry_vertices(const Level& level, std::span<const FaceHistory::Fate> fates) {
   for (KnownDistance& known : forward_.vertices) {
     known.searched = false;
+    const bool is_to_face = known.face != kNoIndex && !known.is_hint;
+    if (!is_to_face) known.distance += static_cast<double>(moved_.largest);
     if (known.face == kNoIndex) continue;
     const FaceHistory::Fate& fate = fates[known.face];
     if (!fate.is_there()) {
-      known.distance += static_cast<double>(fate.moved);
+      if (is_to_face) known.distance += static_cast<double>(fate.moved);
       known.is_hint = true;
       known.face = fate.heir;
     }
