@@ -92,10 +92,8 @@ bool LevelCoder::move(BitCoder& coder, Index vertex, Index half, Index star, std
   if (++move_count_ > kMostMovesEach * limits_.most_vertices) return false;
   Vec3i to = targets.empty() ? Vec3i{} : targets[vertex];
   if (!shapes_->code_move(coder, mesh_, vertex, half, positions_, to)) return false;
-  if (!(to == positions_[vertex])) {
-    moves_.push_back({star, vertex, positions_[vertex], to});
-  }
   const bool has_moved = !(to == positions_[vertex]);
+  if (has_moved) moves_.push_back({star, vertex, positions_[vertex], to});
   positions_.set(vertex, to);
   const auto note_face = [&](Index leaving) {
     moved_faces_.push_back(face_of_corner(leaving));
