@@ -233,49 +233,25 @@ void LevelCoder::order_stars(std::size_t count) {
   for (Index i = 0; i < begin; ++i) vertices_.stars[ends[stars_.stars[i].vertex - first]++] = i;
 }
 
-/// Adds the sector of a star that nothing cuts, with all coarse faces in it: most are of that kind. False where there
-/// is more to it.
-bool LevelCoder::add_whole(std::size_t i) {
-  const std::span<const Index> faces = stars_.star(i);
-  const std::span<const NewStars::Coarse> coarse = stars_.coarse_of(i);
-  if (!stars_.stars[i].closed || faces.size() != coarse.size() + 2 || faces.size() > kMostPatchCorners) return false;
-  const Index centre = mesh_.wedge(3 * faces.front()), group = mesh_.group(faces.front());
-  Index before = mesh_.wedge(3 * faces.back() + 2);
-  for (const Index face : faces) {
-    const Index c = 3 * face;
-    if (mesh_.wedge(c) != centre || mesh_.wedge(c + 1) != before || mesh_.group(face) != group) return false;
-    before = mesh_.wedge(c + 2);
-  }
-  places_.resize(wedges_.size());
-  const std::size_t begin = sectors_.polygons.size();
-  for (const Index face : faces) {
-    sectors_.polygons.push_back(mesh_.wedge(3 * face + 1));
-    sectors_.fine.push_back(face);
-  }
-  for (std::size_t k = faces.size(); k-- > 0;) places_[sectors_.polygons[begin + k]] = static_cast<std::uint16_t>(k);
-  for (const NewStars::Coarse& triangle : coarse) {
-    std::array<std::size_t, 3> places{};
-    bool fits = triangle.group == group;
-    for (std::size_t k = 0; k < 3; ++k) {
-      places[k] = places_[triangle.wedges[k]];
-      fits = fits && places[k] < faces.size() && sectors_.polygons[begin + places[k]] == triangle.wedges[k];
-    }
-    if (!fits || !sectors_.add_coarse(triangle.face, places)) return false;
-  }
-  sectors_.end_sector(SectorShape::Closed, group, centre);
-  return true;
-}
-
 /// Adds the sectors of a star.
 bool LevelCoder::split(std::size_t i) {
-  if (add_whole(i)) return true;
+  const std::span<const Index> faces = stars_.star(i);
+  const auto spoke_at = [&](std::size_t k) { return spoke(faces[k]); };
+  if (!stars_.stars[i].closed || has_cut(faces.size(), spoke_at)) return split_cut(i);
+  places_.resize(wedges_.size());
+  for (auto k = static_cast<Index>(faces.size()); k-- > 0;)
+    places_[mesh_.wedge(3 * faces[k] + 1)] = static_cast<std::uint16_t>(k);
+  const auto place_of = [&](const NewStars::Coarse& triangle, std::size_t k) { return places_[triangle.wedges[k]]; };
+  return add_closed(faces.size(), spoke_at, stars_.coarse_of(i), place_of, sectors_);
+}
+
+/// Adds the sectors of a star that is open or has cuts.
+bool LevelCoder::split_cut(std::size_t i) {
   const std::span<const Index> faces = stars_.star(i);
   split_.closed = stars_.stars[i].closed;
   split_.faces.clear();
   split_.coarse.clear();
-  for (const Index face : faces)
-    split_.faces.push_back(
-        {face, mesh_.group(face), mesh_.wedge(3 * face), mesh_.wedge(3 * face + 1), mesh_.wedge(3 * face + 2)});
+  for (const Index face : faces) split_.faces.push_back(spoke(face));
   places_.resize(std::max(wedges_.size(), mesh_.vertex_count()));
   for (auto k = static_cast<Index>(faces.size()); k-- > 0;)
     places_[mesh_.from(3 * faces[k] + 1)] = static_cast<std::uint16_t>(k);

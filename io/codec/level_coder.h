@@ -155,8 +155,12 @@ class LevelCoder {
   void add_stars();
   void end_star(Index vertex, bool closed, bool is_loose);
   void order_stars(std::size_t count);
-  bool add_whole(std::size_t star);
+  Star::Spoke spoke(Index face) const {
+    const Index c = 3 * face;
+    return {face, mesh_.group(face), mesh_.wedge(c), mesh_.wedge(c + 1), mesh_.wedge(c + 2)};
+  }
   bool split(std::size_t star);
+  bool split_cut(std::size_t star);
   bool end_vertex();
   bool code_extra(BitCoder& coder, Index count);
   bool code_flag(BitCoder& coder, std::uint32_t which, bool is);

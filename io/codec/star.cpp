@@ -10,8 +10,6 @@
 namespace lodestone::detail {
 namespace {
 
-constexpr std::size_t kMostPlaces = 256;
-
 template <class T>
 std::span<const T> part_of(const std::vector<T>& all, std::size_t begin, std::size_t end) {
   return std::span(all).subspan(begin, end - begin);
@@ -30,7 +28,10 @@ class Splitter {
   bool split() {
     const std::size_t count = star_.faces.size();
     if (count == 0 || ring_size_ > kMostPlaces) return false;
-    if (star_.closed && !has_cut()) return add_closed();
+    const auto spoke_at = [&](std::size_t i) -> const Star::Spoke& { return star_.faces[i]; };
+    const auto place_of = [](const Star::Coarse& triangle, std::size_t k) { return triangle.places[k]; };
+    if (star_.closed && !has_cut(count, spoke_at))
+      return add_closed(count, spoke_at, std::span<const Star::Coarse>(star_.coarse), place_of, sectors_);
     std::size_t first = 0;
     if (star_.closed)
       while (!is_cut(first)) ++first;
@@ -50,18 +51,9 @@ class Splitter {
   const Star::Spoke& face(std::size_t i) const { return star_.faces[i % star_.faces.size()]; }
 
   /// Whether something differs at the spoke between two faces.
-  static bool differ(const Star::Spoke& before, const Star::Spoke& after) {
+  bool is_cut(std::size_t i) const {
+    const Star::Spoke &before = face(i + star_.faces.size() - 1), &after = face(i);
     return before.centre != after.centre || before.group != after.group || before.to != after.from;
-  }
-  bool is_cut(std::size_t i) const { return differ(face(i + star_.faces.size() - 1), face(i)); }
-  /// The same of any spoke of a closed star.
-  bool has_cut() const {
-    const Star::Spoke* before = &star_.faces.back();
-    for (const Star::Spoke& after : star_.faces) {
-      if (differ(*before, after)) return true;
-      before = &after;
-    }
-    return false;
   }
 
   /// A ring corner's number in a run's polygon; more than `count` where it has none. A ring that begins and ends at one
@@ -138,25 +130,6 @@ class Splitter {
   bool end(const Run& run, SectorShape shape) {
     sectors_.end_sector(shape, face(run.begin).group, face(run.begin).centre);
     return true;
-  }
-
-  /// Most stars are of one sector, with all coarse faces in it.
-  bool add_closed() {
-    const std::vector<Star::Spoke>& faces = star_.faces;
-    for (const Star::Spoke& spoke : faces) {
-      sectors_.polygons.push_back(spoke.from);
-      sectors_.fine.push_back(spoke.face);
-    }
-    for (const Star::Coarse& triangle : star_.coarse) {
-      if (triangle.group != faces.front().group) return false;
-      std::array<std::size_t, 3> places{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        places[k] = triangle.places[k];
-        if (places[k] >= faces.size() || faces[places[k]].from != triangle.wedges[k]) return false;
-      }
-      if (!sectors_.add_coarse(triangle.face, places)) return false;
-    }
-    return star_.coarse.size() + 2 == ring_size_ && end({0, faces.size()}, SectorShape::Closed);
   }
 
   bool add_open(const Run& run) {
