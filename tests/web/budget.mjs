@@ -15,6 +15,7 @@ if (!existsSync(join(options.package, 'lib', 'lodestone.wasm'))) {
 }
 const { DetailBudget } = await import(join(options.package, 'lib', 'budget.js'));
 const { LodestoneStream } = await import(join(options.package, 'lib', 'index.js'));
+const { Session } = await import(join(options.package, 'lib', 'session.js'));
 
 /** A mesh whose levels have about as many faces as the inverse of their deviation, by a power; it takes what it is given at once. */
 class Model {
@@ -144,6 +145,50 @@ const checksOfModels = {
     assert.ok(seen.every(({ model }) => model.chunksReady === model.chunks.length), seen.map(({ model }) => model.chunksReady).join(' '));
     return 'all of all';
   },
+  'a chunk that leads to hardly a finer level than the one before it comes': () => {
+    const budget = new DetailBudget({ pixelError: 0, atOnce: 1 });
+    const seen = crowd(budget, LIST.slice(0, 3));
+    for (const { model } of seen) model.chunks[2].deviation = 0.97 * model.chunks[1].deviation;
+    settle(budget, seen);
+    assert.ok(seen.every(({ model }) => model.chunksReady === model.chunks.length), seen.map(({ model }) => model.chunksReady).join(' '));
+    return 'all of all';
+  },
+  'who gets no more keeps nobody waiting': () => {
+    const budget = new DetailBudget({ pixelError: 0 });
+    const seen = crowd(budget, LIST.slice(0, 3));
+    seen.sort((a, b) => errorOf(b) - errorOf(a));
+    const [first, second, { model }] = seen;
+    for (const entry of [first, second]) entry.model.ended = true;
+    settle(budget, [{ model: first.model, pixels: first.pixels }, { model: second.model, pixels: second.pixels }], 1);
+    for (const entry of [first, second]) entry.model.receive = () => false;
+    settle(budget, seen);
+    assert.equal(model.chunksReady, model.chunks.length);
+    assert.ok(!budget.isWaiting);
+    return 'all of the third';
+  },
+  'levels that come late mislead nobody': () => {
+    const budget = new DetailBudget({ triangles: 30_000, pixelError: 0 });
+    const [{ model, pixels }] = crowd(budget, [[100_000, 1000]]);
+    const receive = () => {
+      model.receive();
+      model.settled = model.wanted;
+    };
+    model.settled = undefined;
+    const frames = (first, count, act) => {
+      for (let frame = first; frame < first + count; ++frame) {
+        budget.see(model, pixels);
+        budget.update(10_000 + 16 * frame);
+        act();
+      }
+    };
+    frames(0, 100, receive);
+    budget.triangles = 12_000;
+    frames(100, 60, () => {}); // a second without any answer
+    budget.triangles = 25_000;
+    frames(160, 300, receive);
+    assert.ok(model.level.faceCount > 0.95 * 25_000 && model.level.faceCount <= 25_000, `${model.level.faceCount}`);
+    return `${model.level.faceCount} of 25000`;
+  },
   'bytes are held': () => {
     const budget = new DetailBudget({ bytes: 600_000, pixelError: 0 });
     const seen = crowd(budget, LIST);
@@ -181,6 +226,127 @@ const checksOfModels = {
     budget.update();
     assert.equal(model.wanted, Infinity);
     return 'nothing is wanted';
+  },
+};
+
+/** A runtime whose streams have chunks of a hundred bytes, which lead to levels of these deviations, and no mesh. */
+const runtimeOf = (deviations) => ({
+  createStream() {
+    const chunks = deviations.map((deviation, i) => ({ byteBegin: 100 * i, byteEnd: 100 * (i + 1), position: i, faceCount: 100 * (i + 1), deviation }));
+    let [bytes, position] = [0, 0];
+    const ready = () => Math.floor(bytes / 100);
+    const none = () => [];
+    return {
+      get state() {
+        const dueEnd = Math.min(100 * (ready() + 1), 100 * chunks.length);
+        return { dueBegin: bytes, dueEnd, chunkCount: bytes > 0 ? chunks.length : 0, chunksReady: ready(), groupCount: 0, attributeCount: 0, low: [0, 0, 0], high: [1, 1, 1] };
+      },
+      chunk: (i) => chunks[i],
+      append: (offset, { length }) => (bytes = Math.max(bytes, offset + length)),
+      finish: none,
+      destroy: none,
+      createCursor: () => ({
+        get level() {
+          return { ...chunks[position] };
+        },
+        choose: (deviation) => {
+          const at = chunks.findIndex((chunk) => chunk.deviation <= deviation);
+          return at < 0 || at >= ready() ? ready() - 1 : at;
+        },
+        seek: (to) => (position = to),
+        newWedges: () => ({ begin: 0, end: 0 }),
+        positions: () => new Float32Array(0),
+        movedWedges: none,
+        destroy: none,
+      }),
+    };
+  },
+});
+
+/** What fetches so many bytes, whose answers come in pieces that end where `cut` says, and then some. */
+const fetchOf = (length, cut) => async (_, { headers }) => {
+  const [first, last] = headers.Range.match(/\d+/g).map(Number);
+  if (first >= length) return new Response(null, { status: 416 });
+  const end = Math.min(last + 1, length);
+  let at = first;
+  const body = new ReadableStream({
+    async pull(controller) {
+      await new Promise(setImmediate);
+      if (at === end) return void controller.close();
+      const to = Math.min(end, Math.max(at + 1, cut(at)));
+      controller.enqueue(new Uint8Array(to - at));
+      at = to;
+    },
+  }, { highWaterMark: 0 });
+  return new Response(body, { status: 206, headers: { 'content-range': `bytes ${first}-${end - 1}/${length}` } });
+};
+
+/** A session as a budget has it; each of its updates is dealt with a little later. */
+function memberOf(deviations, fetcher) {
+  const member = { ended: false };
+  const session = new Session(runtimeOf(deviations), 'none', { deviation: Infinity, fetch: fetcher }, (message) => {
+    if (message.type === 'error') member.error = message;
+    Object.assign(member, message);
+    if (message.type === 'update') setImmediate(() => session.acknowledge());
+  });
+  member.want = (deviation) => session.want(deviation);
+  member.close = () => session.close();
+  session.run();
+  return member;
+}
+
+/** Makes frames until nothing is waited for, or for long. */
+async function settleMembers(budget, members, isDone) {
+  for (let frame = 0; frame < 1000 && !isDone(); ++frame) {
+    for (const member of members) budget.see(member, 1);
+    budget.update(1000 + 16 * frame);
+    await new Promise(setImmediate);
+  }
+  for (const member of members) member.close();
+}
+
+const random = (seed) => () => {
+  seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+  return seed / 2 ** 32;
+};
+
+const checksOfSessions = {
+  // Chunks that are no finer than others before them arrive without a level that could tell of them.
+  'all arrives, in whatever pieces': async () => {
+    for (let seed = 0; seed < 300; ++seed) {
+      const next = random(seed);
+      const deviations = Array.from({ length: 10 }, (_, i) => (i === 9 ? 0 : 1.09 ** (Math.round(8 * next()) - 3 * i)));
+      const cuts = Array.from({ length: 1 + Math.floor(4 * next()) }, () => Math.floor(1000 * next())).sort((a, b) => a - b);
+      const pieces = (at) => cuts.find((cut) => cut > at) ?? 1000;
+      const budget = new DetailBudget({ pixelError: 1e-9, atOnce: 1 });
+      const members = [memberOf(deviations, fetchOf(1000, pieces)), memberOf(deviations, fetchOf(1000, (at) => at + 37))];
+      for (const member of members) budget.add(member);
+      await settleMembers(budget, members, () => members.every(({ chunksReady }) => chunksReady === 10));
+      const ready = members.map(({ chunksReady }) => chunksReady);
+      assert.deepEqual(ready, [10, 10], `${ready} of 10 chunks, ${deviations.map((deviation) => deviation.toFixed(2))}, cut at ${cuts}`);
+    }
+    return '300 pairs of streams';
+  },
+  'a stream that ends early keeps nobody waiting': async () => {
+    const deviations = [8, 4, 2, 1, 0];
+    const budget = new DetailBudget({ pixelError: 1e-9, atOnce: 1 });
+    const members = [memberOf(deviations, fetchOf(200, (at) => at + 37)), memberOf(deviations.map((deviation) => deviation / 8), fetchOf(500, (at) => at + 37))];
+    for (const member of members) budget.add(member);
+    await settleMembers(budget, members, () => members[1].chunksReady === 5);
+    assert.deepEqual(members.map(({ chunksReady, ended }) => [chunksReady, ended]), [[2, true], [5, true]]);
+    return '2 and 5 of 5 chunks';
+  },
+  'no more is fetched than what a level before the last needs': async () => {
+    const asked = [];
+    const deviations = [8, 2, 6, 4, 2, 1, 0];
+    const fetcher = fetchOf(700, (at) => (at < 400 ? 400 : at + 1));
+    const member = memberOf(deviations, (url, request) => (asked.push(request.headers.Range), fetcher(url, request)));
+    member.want(2);
+    for (let i = 0; i < 100; ++i) await new Promise(setImmediate);
+    member.close();
+    assert.equal(member.chunksReady, 4);
+    assert.equal(member.level.deviation, 2);
+    return `${member.chunksReady} chunks`;
   },
 };
 
@@ -222,5 +388,6 @@ async function shareStreams() {
 
 const log = new Log();
 await log.run('budget', checksOfModels);
+await log.run('sessions', checksOfSessions);
 await log.run('streams', { 'share what there is': shareStreams });
 log.close();

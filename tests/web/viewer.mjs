@@ -38,6 +38,7 @@ const site = await openSite({ ...options, more: { viewer: pageFolder } });
 const server = await serveSlowly(folder, {});
 const DESKTOP = { width: 1280, height: 800 };
 const PHONE = { width: 390, height: 844 };
+const PATIENCE = 60_000; // milliseconds in which something has to change
 let page;
 
 /** Opens the page anew; its files come from the server as it behaves. */
@@ -54,12 +55,14 @@ const queryOf = (paths, more = '') => `?${paths.map((path) => `url=${encodeURICo
 const state = () => page.ask(() => window.viewer.state);
 const picture = (label) => page.page.screenshot({ path: join(options.output, `viewer-${label}.png`) });
 
-/** Waits until the page says that something is so. */
+/** Waits until the page says that something is so, for as long as what it says changes: a busy machine takes its time. */
 async function until(isTrue, what) {
   let last;
-  for (const end = Date.now() + 120_000; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 50))) {
-    last = await state();
-    if (isTrue(last)) return last;
+  for (let end = Date.now() + PATIENCE; Date.now() < end; await new Promise((resolve) => setTimeout(resolve, 50))) {
+    const now = await state();
+    if (isTrue(now)) return now;
+    if (JSON.stringify(now) !== JSON.stringify(last)) end = Date.now() + PATIENCE;
+    last = now;
   }
   throw new Error(`not ${what}: ${JSON.stringify(last)}`);
 }

@@ -37,9 +37,9 @@ class Part {
 
   /** The shares of the model's size that what has arrived, and what is shown, deviate by. */
   get arrived() {
-    const { chunks, chunksReady } = this.member;
+    const { chunks, chunksReady = 0 } = this.member;
     const own = this.member.shown?.deviation ?? Infinity; // a stream begins coarser than what its file shows
-    return Math.min(own, chunks && chunksReady > 0 ? chunks[chunksReady - 1].deviation : Infinity) / this.size;
+    return Math.min(own, ...(chunks ?? []).slice(0, chunksReady).map(({ deviation }) => deviation)) / this.size;
   }
 
   get shown() {

@@ -345,7 +345,7 @@ window.viewer = {
     return {
       drawn: budget.drawn,
       error: budget.error,
-      isStill: isStill(),
+      isStill: isStill() && !budget.isWaiting,
       models: models.map((model) => ({
         name: model.name, faces: model.faces, bytes: model.bytes, total: model.total, shown: model.shown, arrived: model.arrived,
         points: model.history.length, isMeasured: model.isMeasured, worstHeat: model.worstHeat, message: model.error?.message,

@@ -15,6 +15,10 @@ export interface BudgetMember {
   readonly shown?: { deviation: number; faceCount: number };
   /** Of what has been decoded. */
   readonly bytes?: number;
+  /** Whether no more will come: whoever waits for what will not would keep others from coming. */
+  readonly ended?: boolean;
+  /** What was given to `want`, if what is drawn is what comes of that. A member without it is thought to take 0.15 s. */
+  readonly settled?: number;
   want(deviation: number): void;
 }
 
@@ -58,4 +62,6 @@ export class DetailBudget {
   readonly drawn: number;
   /** Bytes that have been decoded. */
   readonly fetched: number;
+  /** Whether bytes that are wanted are still to come: what is drawn then is not yet what it will be. */
+  readonly isWaiting: boolean;
 }

@@ -1,9 +1,9 @@
 // Several meshes that share what may be drawn and fetched: all have the same error in pixels, the smallest for which there is
 // enough, and the next bytes are fetched for those that have the greatest.
-import { STEP } from './view.js';
+import { STEP, leastSoFar } from './view.js';
 
 const PATIENCE = 300; // milliseconds for which what was seen counts
-const SETTLED = 150; // milliseconds after which a level is what comes of what is wanted
+const SETTLED = 150; // milliseconds after which a level is what comes of what is wanted, where a mesh does not say so
 const CLOSE = 1.02; // levels whose faces differ by less are known well enough
 
 /** How many faces a mesh has at each deviation, as far as is known: at the ends of its chunks, and where it has been. */
@@ -11,7 +11,8 @@ class Curve {
   #known; // by falling deviation, faces rising
 
   constructor(levels) {
-    this.#known = levels.map(({ deviation, faceCount }) => ({ deviation, faceCount }));
+    const least = leastSoFar(levels);
+    this.#known = levels.filter((_, i) => i === 0 || least[i] < least[i - 1]).map(({ deviation, faceCount }) => ({ deviation, faceCount }));
     const last = this.#known.at(-1);
     const before = this.#known.at(-2);
     // Faces are about the inverse of the deviation: below that there is the whole.
@@ -65,6 +66,7 @@ class Entry {
     this.seen = -Infinity; // when
     this.wanted = undefined;
     this.curve = undefined;
+    this.least = undefined; // by chunk
     this.level = undefined; // that was drawn last
     this.since = -Infinity; // when it, or what is wanted, became another
   }
@@ -86,6 +88,7 @@ class Entry {
     this.view = undefined;
     const { chunks } = this.mesh;
     if (chunks) this.curve ??= new Curve(chunks);
+    if (chunks) this.least ??= leastSoFar(chunks);
     this.#learn(now);
   }
 
@@ -95,24 +98,31 @@ class Entry {
     if (level.faceCount !== this.level?.faceCount) this.since = now;
     this.level = level;
     this.curve.learn(level.deviation, level.faceCount);
-    // It has had the time to get as coarse as it may: there is no other level up to what is wanted, and hardly a little farther.
-    if (now - this.since > SETTLED && level.deviation < this.wanted) this.curve.learn(this.wanted, level.faceCount, STEP);
+    const isSettled = 'settled' in this.mesh ? this.mesh.settled === this.wanted : now - this.since > SETTLED;
+    // It is as coarse as it may get: there is no other level up to what is wanted, and hardly a little farther.
+    if (isSettled && level.deviation < this.wanted) this.curve.learn(this.wanted, level.faceCount, STEP);
   }
 
   /** The deviation of what has arrived, of which a file's own level is part. */
   get arrived() {
-    const { chunks, chunksReady, shown } = this.mesh;
-    return Math.min(shown?.deviation ?? Infinity, chunks && chunksReady > 0 ? chunks[chunksReady - 1].deviation : Infinity);
+    const { chunksReady, shown } = this.mesh;
+    return Math.min(shown?.deviation ?? Infinity, this.least && chunksReady > 0 ? this.least[chunksReady - 1] : Infinity);
   }
 
   /**
    * What brings it nearer to the whole: the next chunk that leads to a finer level than has arrived, as not every chunk does, with
-   * the bytes up to its end; undefined where nothing is known of chunks, or none is left.
+   * the bytes up to its end; undefined where nothing is known of chunks, or none is left, or will come.
    */
   get next() {
-    const { chunks, chunksReady, bytes } = this.mesh;
+    const { chunks, chunksReady, bytes, ended } = this.mesh;
+    if (ended) return undefined;
     const chunk = chunks?.find(({ deviation }, i) => i >= chunksReady && deviation < this.arrived);
     return chunk && { deviation: chunk.deviation, bytes: chunk.byteEnd - (bytes ?? 0) };
+  }
+
+  /** Whether it is to have bytes that are still to come. */
+  get isWaiting() {
+    return this.wanted < this.arrived && !(this.mesh.chunks && !this.next);
   }
 
   facesNow() {
@@ -124,9 +134,11 @@ class Entry {
     return this.places * this.curve.faces(this.pixels === 0 ? Infinity : error / this.pixels);
   }
 
-  /** A little finer is not worth the work; a little coarser is, where there are too many triangles. */
+  /** A little finer is not worth the work, but where bytes come of it; a little coarser is, where there are too many triangles. */
   want(deviation, now) {
-    if (deviation <= this.wanted && deviation * STEP >= this.wanted && (deviation > 0 || this.wanted === 0)) return;
+    const isClose = deviation <= this.wanted && deviation * STEP >= this.wanted && (deviation > 0 || this.wanted === 0);
+    const isNext = deviation < this.arrived && this.wanted >= this.arrived;
+    if (isClose && !isNext) return;
     this.wanted = deviation;
     this.since = now;
     this.mesh.want(deviation);
@@ -166,6 +178,10 @@ export class DetailBudget {
 
   get fetched() {
     return this.#sum(({ mesh }) => mesh.bytes ?? 0);
+  }
+
+  get isWaiting() {
+    return [...this.#entries.values()].some((entry) => entry.isWaiting);
   }
 
   #sum(count) {

@@ -33,7 +33,7 @@ export interface AttributeFormat {
 
 export type AttributeArray = Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array | Float32Array;
 
-/** What changed between a level and the one before it. */
+/** What changed between a level and the one before it, which may be the same: then it says where the stream stands. */
 export interface Update {
   level: Level;
   /** Vertices that are new: [begin, end) of the vertex buffers. */
@@ -42,7 +42,7 @@ export interface Update {
   moved: { begin: number; positions: Float32Array }[];
   /** By group: how many entries of its index buffer are drawn, and those that are others now. */
   groups: { count: number; ranges: { begin: number; corners: Uint32Array }[] }[];
-  /** Where they were asked for: of all wedges of the level. */
+  /** Where they were asked for: of all wedges of the level, if that is another one. */
   normals: Float32Array | null;
   /** Where it was asked for: what wedges that only the finer of the two levels has, from `begin` on, come from: wedges of the
    * coarser one, at which they begin to slide, or end where this level is the coarser one; themselves where they are to stay. */
@@ -54,6 +54,10 @@ export interface Update {
   bytes: number;
   /** Chunks that have been decoded. */
   chunksReady: number;
+  /** Whether no more will come: all has, or the source has no more. */
+  ended: boolean;
+  /** What was given to `want`, if this level is what comes of that; else others are to follow. */
+  settled: number | undefined;
 }
 
 export interface StreamOptions {
@@ -96,6 +100,9 @@ export class LodestoneStream implements AsyncIterable<Update> {
   readonly high: [number, number, number];
   readonly bytes: number;
   readonly chunksReady: number;
+  /** Also where it has failed. */
+  readonly ended: boolean;
+  readonly settled: number | undefined;
   /** Whether all of it has been decoded. */
   readonly complete: boolean;
 

@@ -86,6 +86,7 @@ export class LodestoneStream {
   #closed = false;
   #owes = false; // an acknowledgement
   #opened;
+  ended = false; // no more bytes come
 
   /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. */
   static async open(url, options = {}) {
@@ -111,10 +112,12 @@ export class LodestoneStream {
       Object.assign(this, { chunks, groups, attributes, low, high });
       this.#opened.resolve();
     } else if (message.type === 'update') {
-      Object.assign(this, { level: message.level, low: message.low, high: message.high, bytes: message.bytes, chunksReady: message.chunksReady });
+      const { level, low, high, bytes, chunksReady, ended, settled } = message;
+      Object.assign(this, { level, low, high, bytes, chunksReady, ended, settled });
       this.#queue.push(message);
     } else if (message.type === 'error') {
       this.#error = new LodestoneError(message.code, message.message);
+      this.ended = true;
       this.#opened.reject(this.#error);
     }
     this.#wake();

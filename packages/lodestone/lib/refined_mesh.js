@@ -91,6 +91,16 @@ export class RefinedMesh {
     return this.#stream?.chunksReady ?? 0;
   }
 
+  /** Whether no more of it will come. */
+  get ended() {
+    return this.#stream?.ended ?? false;
+  }
+
+  /** What it was said that it may deviate by, if its level is what comes of that. */
+  get settled() {
+    return this.#stream?.settled;
+  }
+
   /** Of what has arrived. */
   get bytes() {
     return this.#stream?.bytes ?? 0;

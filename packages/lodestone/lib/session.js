@@ -1,6 +1,7 @@
 // A stream that is read and drawn from: fetches what is wanted, decodes it, and hands out what an engine has to upload.
 // It runs in a worker, or where there is none in the page.
 import { Source } from './source.js';
+import { leastSoFar } from './view.js';
 
 const MOST_RECORDS = 20_000; // in an update: about a megabyte, which a page takes in a few milliseconds
 const MOST_BYTES = 1 << 18; // in a request, so that what is wanted may change
@@ -37,8 +38,9 @@ export class Session {
   #closed = false;
   #lost = false; // the runtime
   #chunks = [];
+  #least = []; // by chunk: what levels that it and those before it lead to deviate by at least
   #ended = false; // no more bytes
-  #shown = false; // the base mesh, at least
+  #told = {}; // of where it stands, with the last update; nothing before the base mesh is shown
 
   /** `post(message, transferred)` gets the messages; after each update it waits for `acknowledge`. */
   constructor(runtime, url, options, post) {
@@ -78,7 +80,7 @@ export class Session {
   async run() {
     try {
       while (!this.#closed) {
-        if (await this.#move()) continue;
+        if ((await this.#move()) || (await this.#tell())) continue;
         if (this.#isEnough()) await this.#changed.wait();
         else await this.#fetchMore();
       }
@@ -94,10 +96,20 @@ export class Session {
     this.#stream.destroy();
   }
 
-  #isEnough() {
+  /**
+   * Where it stands: what has come of the stream, whether there is no more to come, and what levels may deviate by, if what is shown
+   * is what comes of that.
+   */
+  #standing() {
     const { chunksReady, chunkCount } = this.#stream.state;
-    if (this.#ended || (chunkCount > 0 && chunksReady === chunkCount)) return true;
-    return chunksReady > 0 && this.#chunks[chunksReady - 1].deviation <= this.#deviation;
+    const isSettled = this.#cursor?.choose(this.#deviation) === this.#cursor?.level.position;
+    return { chunksReady, ended: this.#ended || (chunkCount > 0 && chunksReady === chunkCount), settled: isSettled ? this.#deviation : undefined };
+  }
+
+  #isEnough() {
+    const { chunksReady, ended } = this.#standing();
+    if (ended) return true;
+    return chunksReady > 0 && this.#least[chunksReady - 1] <= this.#deviation;
   }
 
   /** How far bytes are wanted. */
@@ -118,7 +130,6 @@ export class Session {
     }
     this.#ended = true;
     this.#stream.finish();
-    this.#post({ type: 'end', bytes: state.dueBegin });
   }
 
   /** Hands bytes over as far as a chunk is complete, and shows that before it goes on. */
@@ -131,11 +142,16 @@ export class Session {
       offset += length;
       bytes = bytes.subarray(length);
       const after = this.#stream.state;
-      if (before.chunkCount === 0 && after.chunkCount > 0) this.#chunks = Array.from({ length: after.chunkCount }, (_, i) => this.#stream.chunk(i));
+      if (before.chunkCount === 0 && after.chunkCount > 0) this.#list(after.chunkCount);
       if (after.chunksReady > 0 && !this.#cursor) this.#start(after);
       if (after.chunksReady > before.chunksReady) while (!this.#closed && (await this.#move()));
       if (this.#closed || bytes.length === 0) return;
     }
+  }
+
+  #list(count) {
+    this.#chunks = Array.from({ length: count }, (_, i) => this.#stream.chunk(i));
+    this.#least = leastSoFar(this.#chunks);
   }
 
   #start(state) {
@@ -155,12 +171,30 @@ export class Session {
     if (!this.#cursor) return false;
     const from = this.#cursor.level.position;
     const way = this.#cursor.choose(this.#deviation) - from;
-    if (way === 0 && this.#shown) return false;
-    this.#shown = true;
-    const { update, transferred } = this.#update(this.#seek(from, from + Math.sign(way) * Math.min(Math.abs(way), MOST_RECORDS)));
-    this.#post(update, transferred);
-    await this.#acknowledged.wait();
+    if (way === 0 && this.#told.chunksReady > 0) return false;
+    await this.#show(from + Math.sign(way) * Math.min(Math.abs(way), MOST_RECORDS), this.#options.normals);
     return true;
+  }
+
+  /**
+   * Posts where it stands, where no level has had that to say, since the one that is shown is what is wanted: who is to say what is
+   * wanted next goes by it. False where there is no more to say.
+   */
+  async #tell() {
+    if (!this.#cursor) return false;
+    const { chunksReady, ended, settled } = this.#standing();
+    if (settled === undefined) return true; // another has come to be wanted in the meantime
+    if (this.#told.chunksReady === chunksReady && this.#told.ended === ended && this.#told.settled === settled) return false;
+    await this.#show(this.#cursor.level.position, false);
+    return true;
+  }
+
+  /** Goes to a level, and waits until what that changed has been dealt with. */
+  async #show(position, withNormals) {
+    const { update, transferred } = this.#update(this.#seek(this.#cursor.level.position, position), withNormals);
+    this.#told = this.#standing();
+    this.#post(Object.assign(update, this.#told), transferred);
+    await this.#acknowledged.wait();
   }
 
   /** Returns what wedges come from on the way, where that was asked for: the finer level's say so. */
@@ -171,7 +205,7 @@ export class Session {
     return wants && to > from ? this.#cursor.origins(from) : gone;
   }
 
-  #update(morph) {
+  #update(morph, withNormals) {
     const cursor = this.#cursor;
     const stream = this.#stream;
     const state = stream.state;
@@ -185,12 +219,11 @@ export class Session {
         .filter((range) => range.begin < begin)
         .map((range) => ({ begin: range.begin, positions: cursor.positions(range.begin, Math.min(range.end, begin)) })),
       groups: [],
-      normals: this.#options.normals ? cursor.normals() : null,
+      normals: withNormals ? cursor.normals() : null,
       morph,
       low: state.low,
       high: state.high,
       bytes: state.dueBegin,
-      chunksReady: state.chunksReady,
     };
     for (let i = 0; i < state.attributeCount; ++i) update.wedges.attributes.push(stream.attributeValues(i, begin, end));
     for (let group = 0; group < state.groupCount; ++group) {

@@ -4,6 +4,15 @@
 /** How much what is wanted must change before it is said again. */
 export const STEP = 1.05;
 
+/** Returns, by chunk, the least deviation of the levels that it and those before it lead to: not each is finer than all before it. */
+export function leastSoFar(chunks) {
+  let least = Infinity;
+  return chunks.map(({ deviation }) => {
+    least = Math.min(least, deviation);
+    return least;
+  });
+}
+
 /** How much a matrix, whose numbers begin at `at`, lengthens along an axis at most. */
 export function stretchOf(matrix, at = 0) {
   const square = (i) => matrix[at + i] ** 2 + matrix[at + i + 1] ** 2 + matrix[at + i + 2] ** 2;
