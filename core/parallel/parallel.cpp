@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 #include <new>
+#include <utility>
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -66,13 +67,16 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
   }
   check_memory();
   FirstFailure failure;
-  // Jobs are large and of any length: each is a task of its own.
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, count, 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) failure.run(i, job);
-      },
-      tbb::simple_partitioner());
+  // Who waits for the last jobs of a loop begins nothing else: that may take much longer than they do.
+  tbb::this_task_arena::isolate([&] {
+    // Jobs are large and of any length: each is a task of its own.
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i < range.end(); ++i) failure.run(i, job);
+        },
+        tbb::simple_partitioner());
+  });
   failure.rethrow();
 }
 
@@ -82,6 +86,49 @@ void for_each_chunk(std::size_t count, std::size_t chunk_size,
     const std::size_t begin = chunk * chunk_size;
     job(begin, std::min(begin + chunk_size, count));
   });
+}
+
+/// Whoever claims it first does it: another thread, or the owner that has come to need it.
+struct SideJob::Task {
+  explicit Task(std::function<void()> work) : job(std::move(work)) {}
+
+  void run_once() {
+    if (is_claimed.exchange(true)) return;
+    try {
+      job();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    job = nullptr;
+    is_done = true;
+    is_done.notify_all();
+  }
+
+  std::function<void()> job;
+  std::exception_ptr failure;
+  std::atomic<bool> is_claimed{false}, is_done{false};
+};
+
+void SideJob::start(std::function<void()> job) {
+  task_ = std::make_shared<Task>(std::move(job));
+  if (tbb::this_task_arena::max_concurrency() == 1) return task_->run_once();
+  check_memory();
+  tbb::task_arena(tbb::task_arena::attach()).enqueue([task = task_] { task->run_once(); });
+}
+
+void SideJob::wait() {
+  const std::shared_ptr<Task> task = std::exchange(task_, nullptr);
+  if (!task) return;
+  task->run_once();
+  task->is_done.wait(false);
+  if (task->failure) std::rethrow_exception(task->failure);
+}
+
+SideJob::~SideJob() {
+  try {
+    wait();
+  } catch (...) {  // nobody asked
+  }
 }
 
 }  // namespace lodestone

@@ -3,6 +3,19 @@
 #include "distance/round_up.h"
 
 namespace lodestone::detail {
+namespace {
+
+constexpr Index kVanished = kNoIndex;
+
+}  // namespace
+
+void FaceChanges::add(const FaceChange& change) {
+  entries_.push_back({static_cast<Index>(faces_.size()),
+                      change.is_vanished ? kVanished : static_cast<Index>(change.fresh_count),
+                      static_cast<Index>(change.gone.size()), change.moved});
+  faces_.insert(faces_.end(), change.gone.begin(), change.gone.end());
+  faces_.insert(faces_.end(), change.beside.begin(), change.beside.end());
+}
 
 FaceChange FaceChanges::add(const RemovalRecord& record, double displacement) {
   Entry entry{static_cast<Index>(faces_.size()), 0, 0, round_up(displacement)};
@@ -22,7 +35,7 @@ FaceChange FaceChanges::add(const RemovalRecord& record, double displacement) {
 }
 
 FaceChange FaceChanges::add_vanished(std::span<const RemovalRecord> records, Index face, double reach) {
-  Entry entry{static_cast<Index>(faces_.size()), 0, 0, round_up(reach)};
+  Entry entry{static_cast<Index>(faces_.size()), kVanished, 0, round_up(reach)};
   for (const RemovalRecord& record : records)
     for (const SectorPatch& sector : record.sectors)
       faces_.insert(faces_.end(), sector.faces.begin(), sector.faces.end());
@@ -41,7 +54,8 @@ FaceChange FaceChanges::operator[](std::size_t i) const {
   const Entry& entry = entries_[i];
   const std::size_t end = i + 1 < size() ? entries_[i + 1].first : faces_.size();
   const std::span<const Index> faces(faces_.data() + entry.first, end - entry.first);
-  return {faces.first(entry.gone), entry.fresh, faces.subspan(entry.gone), entry.moved};
+  const bool is_vanished = entry.fresh == kVanished;
+  return {faces.first(entry.gone), is_vanished ? 0 : entry.fresh, faces.subspan(entry.gone), entry.moved, is_vanished};
 }
 
 void FaceReach::add(const FaceChange& change) {

@@ -16,6 +16,7 @@ struct FaceChange {
   std::size_t fresh_count = 0;    ///< so many of these, from the first on, stand for new faces now
   std::span<const Index> beside;  ///< faces that were there before it, too, at whose edges some have vanished
   float moved = 0;                ///< no point of the surface moved farther, mesh units
+  bool is_vanished = false;       ///< a piece has gone, and what is left has not moved
 
   std::span<const Index> fresh() const { return gone.first(fresh_count); }
 };
@@ -23,6 +24,7 @@ struct FaceChange {
 /// A list of them, in order. Cost: 16 bytes each, and 4 for each of their faces.
 class FaceChanges {
  public:
+  void add(const FaceChange& change);
   /// Adds what a record did, which was just done and moved the surface no farther than `displacement`.
   FaceChange add(const RemovalRecord& record, double displacement);
   /// Adds that a piece has vanished: all of it lies within `reach` of `face`, which is one of the faces left.
@@ -36,7 +38,7 @@ class FaceChanges {
 
  private:
   struct Entry {
-    Index first, fresh, gone;  // of faces_: where they begin, and how many there are
+    Index first, fresh, gone;  // of faces_: where they begin, and how many there are; fresh is kVanished of a piece
     float moved;
   };
 

@@ -26,16 +26,6 @@ float bound_kept(double bound) { return round_up(bound * kRoundingSlack); }
 
 }  // namespace
 
-/// The faces that are left, and the vertices they use.
-struct LevelDeviation::Level {
-  Level(const Mesh& original, const Connectivity& current);
-
-  Mesh mesh;
-  std::vector<Index> source;  // by vertex: the original's
-  std::vector<Index> slots;   // by face: its name
-  std::vector<Index> number;  // by name: the face; kNoIndex: none
-};
-
 LevelDeviation::Level::Level(const Mesh& original, const Connectivity& current)
     : number(current.face_slot_count(), kNoIndex) {
   mesh.corner_wedge.reserve(3 * current.face_count());
@@ -77,18 +67,11 @@ LevelDeviation::LevelDeviation(const Mesh& original, const DeviationOptions& opt
   if (original.face_count() > 0) farthest_point_ = original.corner_position(0);
 }
 
-void LevelDeviation::add(const RemovalRecord& record, double displacement) {
-  const FaceChange change = history_.now().add(record, displacement);
+void LevelDeviation::add(const FaceChange& change) {
+  history_.now().add(change);
   moved_.add(change);
   moved_in_all_.add(change);
-  backward_.add(change);
-}
-
-/// What is left is where it was.
-void LevelDeviation::add_vanished(std::span<const RemovalRecord> records, Index face, double reach) {
-  const FaceChange change = history_.now().add_vanished(records, face, reach);
-  moved_.add(change);
-  moved_in_all_.add(change);
+  if (!change.is_vanished) backward_.add(change);
 }
 
 /// Brings what is known of the original up to the level. What rests on faces that are forgotten is not known any more.
@@ -171,8 +154,7 @@ double LevelDeviation::bound() const {
   return std::min(measured_ + static_cast<double>(moved_.largest), static_cast<double>(moved_in_all_.largest));
 }
 
-Deviation LevelDeviation::measure(const Connectivity& current) {
-  const Level level(original_, current);
+Deviation LevelDeviation::measure(const Level& level) {
   carry(level);
   SurfaceBounds backward = place_vertices(level);
   const std::vector<Index> level_opposite = opposite_corners(level.mesh);

@@ -6,7 +6,6 @@
 
 #include <lodestone/core/connectivity.h>
 #include <lodestone/core/mesh.h>
-#include <lodestone/core/removal.h>
 #include <lodestone/lod/deviation.h>
 
 #include "distance/face_change.h"
@@ -28,20 +27,26 @@ class LevelDeviation {
   /// Pre: `original` outlives the object; no face has been removed. Cost: O(n).
   LevelDeviation(const Mesh& original, const DeviationOptions& options);
 
-  /// Takes into account a record that was just done, and how far it moved the surface at most, mesh units.
-  void add(const RemovalRecord& record, double displacement);
-  /// Takes into account that a piece has vanished: all of it lies within `reach` of `face`, which is one of those left.
-  void add_vanished(std::span<const RemovalRecord> records, Index face, double reach);
+  /// The faces that are left of the original, and the vertices that they use.
+  struct Level {
+    Level(const Mesh& original, const Connectivity& current);
+
+    Mesh mesh;
+    std::vector<Index> source;  ///< by vertex: the original's
+    std::vector<Index> slots;   ///< by face: its name
+    std::vector<Index> number;  ///< by name: the face; kNoIndex: none
+  };
+
+  /// Takes into account what a removal did, or that a piece has vanished.
+  void add(const FaceChange& change);
   /// The two-sided distance is no more, mesh units.
   double bound() const;
 
   /// Measures the two-sided maximum, narrowed as the options say; as `measure_maximum` does.
-  /// Pre: `current` is what the removals have left of the original, and has faces.
-  Deviation measure(const Connectivity& current);
+  /// Pre: `level` is what all that was added has left of the original, and has faces.
+  Deviation measure(const Level& level);
 
  private:
-  struct Level;
-
   void carry(const Level& level);
   void carry_vertices(const Level& level, std::span<const FaceHistory::Fate> fates);
   void carry_faces(std::span<const Index> faces, std::span<const FaceHistory::Fate> fates);

@@ -21,9 +21,9 @@
 #include <lodestone/core/parallel.h>
 #include <lodestone/core/validate.h>
 
-#include "distance/deviation_bounds.h"
 #include "simplify/creases.h"
 #include "simplify/dense_round.h"
+#include "simplify/deviation_bounds.h"
 #include "simplify/evaluator_pool.h"
 #include "simplify/locks.h"
 #include "simplify/pieces.h"
@@ -119,6 +119,7 @@ class Simplifier {
   bool is_kept_by_turning(Index vertex) const;
   bool relax_angles(bool beyond_right_angles);
   bool is_over();
+  bool is_beyond_deviation();
   void tell() const;
   void note_charge(double cost);
   void stop_removing();
@@ -437,6 +438,12 @@ bool Simplifier::is_over() {
   return false;
 }
 
+/// Waits for a measurement only where its result may end the run.
+bool Simplifier::is_beyond_deviation() {
+  const double most = options_.stop.max_deviation;
+  return most < std::numeric_limits<double>::infinity() && bounds_.current() > most;
+}
+
 void Simplifier::tell() const {
   rounds_.reach(1 -
                 static_cast<double>(state_.connectivity.face_count()) / static_cast<double>(state_.mesh.face_count()));
@@ -585,7 +592,6 @@ Index Simplifier::vertex_left_near(Index vertex, Index piece) const {
 /// Frees what only further removals would need: the records are as large again while they become the result.
 void Simplifier::stop_removing() {
   const auto free = [](auto&... all) { ((all = std::remove_reference_t<decltype(all)>()), ...); };
-  bounds_.stop_measuring();
   evaluators_.stop();
   state_.points = CarriedPoints(Mesh());
   free(state_.lines, state_.gaussian, state_.curvature, state_.original_curvature);
@@ -631,12 +637,13 @@ SimplifyResult Simplifier::run() {
     if (!run_round() && !relax_angles(true)) break;
     if (options_.progress.is_cancelled()) break;
     bounds_.end_round(state_.connectivity);
-    if (bounds_.current() > options_.stop.max_deviation) {
+    if (is_beyond_deviation()) {
       stop_reason_ = StopReason::Deviation;
       break;
     }
     tell();
   }
+  const std::vector<float> deviation = bounds_.take_bounds();
   SimplifyResult result;
   result.blocked = count_blocked();
   if (options_.progress.is_cancelled()) stop_reason_ = StopReason::Cancelled;
@@ -646,7 +653,7 @@ SimplifyResult Simplifier::run() {
   result.evaluation_count = evaluation_count_;
   result.charge = charges();
   result.locked = std::move(locked_);
-  result.mesh = builder_.finish(bounds_.bounds());
+  result.mesh = builder_.finish(deviation);
   options_.progress.reach(1);
   return result;
 }

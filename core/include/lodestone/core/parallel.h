@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 
 namespace lodestone {
 
@@ -22,5 +23,25 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
 /// always the same. Pre: chunk_size > 0. Exceptions as above.
 void for_each_chunk(std::size_t count, std::size_t chunk_size,
                     const std::function<void(std::size_t begin, std::size_t end)>& job);
+
+/// A job that is done while its owner goes on, by another of the threads that loops share, if one has time before the
+/// owner waits for it. One after the other.
+class SideJob {
+ public:
+  SideJob() = default;
+  SideJob(const SideJob&) = delete;
+  SideJob& operator=(const SideJob&) = delete;
+  /// Waits; what the job throws is lost.
+  ~SideJob();
+
+  /// Has `job` done, at once where there are no other threads. Pre: the one before it was waited for.
+  void start(std::function<void()> job);
+  /// Returns when the job is done: does it, if nobody has begun. What it throws is thrown here. Without one, nothing.
+  void wait();
+
+ private:
+  struct Task;
+  std::shared_ptr<Task> task_;
+};
 
 }  // namespace lodestone
