@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <deque>
 #include <exception>
 #include <limits>
 #include <mutex>
@@ -88,43 +90,66 @@ void for_each_chunk(std::size_t count, std::size_t chunk_size,
   });
 }
 
-/// Whoever claims it first does it: another thread, or the owner that has come to need it.
-struct SideJob::Task {
-  explicit Task(std::function<void()> work) : job(std::move(work)) {}
+/// Worked on by one thread at a time.
+struct SideJobs::Queue {
+  /// Does jobs until so many are left, unless another thread is on them.
+  void work(std::size_t most_left) {
+    std::unique_lock lock(mutex);
+    if (is_worked_on) return;
+    is_worked_on = true;
+    for (; waiting.size() > most_left; ended.notify_all()) {
+      std::function<void()> job = std::exchange(waiting.front(), nullptr);
+      lock.unlock();
+      run(job);
+      job = nullptr;  // frees what it holds
+      lock.lock();
+      waiting.pop_front();
+    }
+    is_worked_on = false;
+    ended.notify_all();
+  }
 
-  void run_once() {
-    if (is_claimed.exchange(true)) return;
+  void wait(std::size_t most_left) {
+    work(most_left);
+    std::unique_lock lock(mutex);
+    ended.wait(lock, [&] { return waiting.size() <= most_left; });
+    if (failure && waiting.empty()) std::rethrow_exception(std::exchange(failure, nullptr));
+  }
+
+  std::mutex mutex;
+  std::condition_variable ended;              // a job, or the work on them
+  std::deque<std::function<void()>> waiting;  // the first one may be on the way
+  bool is_worked_on = false;
+
+ private:
+  void run(const std::function<void()>& job) {
+    if (failure) return;
     try {
       job();
     } catch (...) {
       failure = std::current_exception();
     }
-    job = nullptr;
-    is_done = true;
-    is_done.notify_all();
   }
 
-  std::function<void()> job;
   std::exception_ptr failure;
-  std::atomic<bool> is_claimed{false}, is_done{false};
 };
 
-void SideJob::start(std::function<void()> job) {
-  task_ = std::make_shared<Task>(std::move(job));
-  if (tbb::this_task_arena::max_concurrency() == 1) return task_->run_once();
+SideJobs::SideJobs() : queue_(std::make_shared<Queue>()) {}
+
+void SideJobs::add(std::function<void()> job) {
+  {
+    const std::lock_guard lock(queue_->mutex);
+    queue_->waiting.push_back(std::move(job));
+    if (queue_->is_worked_on) return;
+  }
+  if (tbb::this_task_arena::max_concurrency() == 1) return queue_->work(0);
   check_memory();
-  tbb::task_arena(tbb::task_arena::attach()).enqueue([task = task_] { task->run_once(); });
+  tbb::task_arena(tbb::task_arena::attach()).enqueue([queue = queue_] { queue->work(0); });
 }
 
-void SideJob::wait() {
-  const std::shared_ptr<Task> task = std::exchange(task_, nullptr);
-  if (!task) return;
-  task->run_once();
-  task->is_done.wait(false);
-  if (task->failure) std::rethrow_exception(task->failure);
-}
+void SideJobs::wait(std::size_t most_left) { queue_->wait(most_left); }
 
-SideJob::~SideJob() {
+SideJobs::~SideJobs() {
   try {
     wait();
   } catch (...) {  // nobody asked

@@ -26,14 +26,12 @@ float bound_kept(double bound) { return round_up(bound * kRoundingSlack); }
 
 }  // namespace
 
-LevelDeviation::Level::Level(const Mesh& original, const Connectivity& current)
-    : number(current.face_slot_count(), kNoIndex) {
+LevelDeviation::Level::Level(const Mesh& original, const Connectivity& current) {
   mesh.corner_wedge.reserve(3 * current.face_count());
   slots.reserve(current.face_count());
   Compaction vertices(original.vertex_count());
-  for (Index f = 0; f < number.size(); ++f) {
+  for (Index f = 0; f < current.face_slot_count(); ++f) {
     if (!current.has_face(f)) continue;
-    number[f] = static_cast<Index>(slots.size());
     slots.push_back(f);
     for (Index c = 3 * f; c < 3 * f + 3; ++c) mesh.corner_wedge.push_back(vertices.add(current.vertex(c)));
   }
@@ -41,6 +39,13 @@ LevelDeviation::Level::Level(const Mesh& original, const Connectivity& current)
   mesh.positions = pick_entries(original.positions, source);
   mesh.wedge_vertex.resize(source.size());
   std::iota(mesh.wedge_vertex.begin(), mesh.wedge_vertex.end(), Index{0});
+}
+
+/// By name: the face; kNoIndex: none.
+std::vector<Index> LevelDeviation::numbers_of(const Level& level) const {
+  std::vector<Index> numbers(original_.face_count(), kNoIndex);
+  for (Index f = 0; f < level.slots.size(); ++f) numbers[level.slots[f]] = f;
+  return numbers;
 }
 
 LevelDeviation::LevelDeviation(const Mesh& original, const DeviationOptions& options)
@@ -75,14 +80,14 @@ void LevelDeviation::add(const FaceChange& change) {
 }
 
 /// Brings what is known of the original up to the level. What rests on faces that are forgotten is not known any more.
-void LevelDeviation::carry(const Level& level) {
+void LevelDeviation::carry(std::span<const Index> numbers) {
   const Index now = history_.period();
   std::fill(forward_.faces.begin(), forward_.faces.end(), kUnbounded);
   std::fill(forward_.lowered.begin(), forward_.lowered.end(), false);
   const Grouping since(now + 2, since_.size(), [&](Index f) { return std::min(since_[f], now + 1); });
   history_.look_back([&](Index period, std::span<const FaceHistory::Fate> fates) {
     if (period == now) {
-      carry_vertices(level, fates);
+      carry_vertices(numbers, fates);
       if (farthest_face_ != kNoIndex && !fates[farthest_face_].is_there()) farthest_face_ = kNoIndex;
     }
     carry_faces(since[period], fates);
@@ -94,7 +99,7 @@ void LevelDeviation::carry(const Level& level) {
 }
 
 /// A distance grows by what moved the face that it is to; where that has gone before, by the most that anything moved.
-void LevelDeviation::carry_vertices(const Level& level, std::span<const FaceHistory::Fate> fates) {
+void LevelDeviation::carry_vertices(std::span<const Index> numbers, std::span<const FaceHistory::Fate> fates) {
   for (KnownDistance& known : forward_.vertices) {
     known.searched = false;
     const bool is_to_face = known.face != kNoIndex && !known.is_hint;
@@ -106,7 +111,7 @@ void LevelDeviation::carry_vertices(const Level& level, std::span<const FaceHist
       known.is_hint = true;
       known.face = fate.heir;
     }
-    if (known.face != kNoIndex) known.face = level.number[known.face];
+    if (known.face != kNoIndex) known.face = numbers[known.face];
   }
 }
 
@@ -155,7 +160,8 @@ double LevelDeviation::bound() const {
 }
 
 Deviation LevelDeviation::measure(const Level& level) {
-  carry(level);
+  const std::vector<Index> numbers = numbers_of(level);
+  carry(numbers);
   SurfaceBounds backward = place_vertices(level);
   const std::vector<Index> level_opposite = opposite_corners(level.mesh);
   TargetSurface level_surface(level.mesh, level_opposite);
@@ -165,7 +171,7 @@ Deviation LevelDeviation::measure(const Level& level) {
   Goal goal = goal_of(options_, std::max(diagonal_, bounding_box(level.mesh).diagonal()), 0);
   // What was farthest raises the goal at once.
   forward_search.probe(farthest_point_, goal);
-  if (farthest_face_ != kNoIndex) backward_search.assume(level.number[farthest_face_], farthest_distance_, goal);
+  if (farthest_face_ != kNoIndex) backward_search.assume(numbers[farthest_face_], farthest_distance_, goal);
   const Deviation result = narrow_both(forward_search, backward_search, goal, options_.budget);
   if (forward_search.largest_distance() > 0) farthest_point_ = forward_search.farthest_point();
   farthest_face_ = backward_search.farthest_face();

@@ -34,7 +34,6 @@ class LevelDeviation {
     Mesh mesh;
     std::vector<Index> source;  ///< by vertex: the original's
     std::vector<Index> slots;   ///< by face: its name
-    std::vector<Index> number;  ///< by name: the face; kNoIndex: none
   };
 
   /// Takes into account what a removal did, or that a piece has vanished.
@@ -47,8 +46,9 @@ class LevelDeviation {
   Deviation measure(const Level& level);
 
  private:
-  void carry(const Level& level);
-  void carry_vertices(const Level& level, std::span<const FaceHistory::Fate> fates);
+  std::vector<Index> numbers_of(const Level& level) const;
+  void carry(std::span<const Index> numbers);
+  void carry_vertices(std::span<const Index> numbers, std::span<const FaceHistory::Fate> fates);
   void carry_faces(std::span<const Index> faces, std::span<const FaceHistory::Fate> fates);
   SurfaceBounds place_vertices(const Level& level);
   void keep(const Level& level, const SurfaceBounds& backward);

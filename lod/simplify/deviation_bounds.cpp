@@ -13,6 +13,9 @@ namespace {
 // How far a piece that vanishes was from what is left is bounded roughly, so it is measured sooner.
 constexpr double kStepAfterVanishing = 0.01;
 
+// The mesh has so many times the faces of all levels together that wait to be measured.
+constexpr std::size_t kFullOfWaiting = 4;
+
 DeviationOptions measuring_options(const Progress& progress) {
   DeviationOptions options;
   options.relative_tolerance = 0.01;
@@ -69,7 +72,7 @@ void DeviationBounds::settle(const Account& account) {
 }
 
 void DeviationBounds::settle_all() {
-  measuring_.wait();
+  measurements_.wait();
   settle(std::exchange(account_, {}));
 }
 
@@ -85,11 +88,12 @@ void DeviationBounds::end_round(const Connectivity& current) {
   if (!any_removed_ || least_ > 0 || static_cast<double>(current.face_count()) > threshold) return;
   measured_faces_ = current.face_count();
   vanished_ = false;
-  measuring_.wait();
+  // Levels that wait take a part of the memory of the mesh, early none, late many.
+  measurements_.wait(measured_faces_ > 0 ? full_->face_count() / (kFullOfWaiting * measured_faces_) : 0);
   // Shared, since a job can be copied.
   const auto level = std::make_shared<const LevelDeviation::Level>(*full_, current);
   const auto account = std::make_shared<const Account>(std::exchange(account_, {}));
-  measuring_.start([this, level, account] {
+  measurements_.add([this, level, account] {
     settle(*account);
     measure(*level);
   });

@@ -38,7 +38,7 @@ class DeviationBounds {
   void repeat() { ask(); }
   /// Ends a round: has the mesh measured where enough has changed since the last time.
   void end_round(const Connectivity& current);
-  /// The bound after the last removal, mesh units. Waits for what is measured.
+  /// The bound after the last removal, mesh units. Waits for all measurements.
   double current();
   /// One bound for each removal, in order; frees what only further removals would need. Waits as well.
   std::vector<float> take_bounds();
@@ -68,12 +68,12 @@ class DeviationBounds {
   bool any_removed_ = false;
   Account account_;  // not settled yet
 
-  // While a measurement is on the way these are its own.
+  // While measurements are on the way these are theirs.
   std::optional<LevelDeviation> level_;  // where it measures at all; else
   FaceReach moved_;                      // how far the full mesh's points are from where they were
   std::vector<float> bound_;
 
-  SideJob measuring_;  // the first to end
+  SideJobs measurements_;  // the first to end
 };
 
 }  // namespace lodestone::detail

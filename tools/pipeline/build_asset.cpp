@@ -15,6 +15,7 @@
 #include <lodestone/lod/cursor.h>
 
 #include "pipeline/build_progress.h"
+#include "pipeline/encode_streams.h"
 #include "pipeline/first_picture.h"
 #include "pipeline/level_measure.h"
 #include "pipeline/level_plan.h"
@@ -89,12 +90,10 @@ void report_level(const Scene& scene, const LevelPlan& plan, std::size_t number,
   result.levels.push_back(std::move(entry));
 }
 
-void report_plan(const Scene& scene, LevelPlan& plan, const std::vector<LeveledMesh>& levels, BuildResult& result) {
-  for (std::size_t i = 0; i < plan.level_count(); ++i) {
-    report_level(scene, plan, i, levels, result);
-    result.met = result.met && plan.choices[i].met;
-  }
-  for (const BuildResult::LeftOut& left_out : plan.left_out) result.met = result.met && left_out.met;
+void report_plan(const Scene& scene, const LevelPlan& plan, const std::vector<LeveledMesh>& levels,
+                 BuildResult& result) {
+  for (std::size_t i = 0; i < plan.level_count(); ++i) report_level(scene, plan, i, levels, result);
+  result.met = is_met(plan);
   result.left_out = plan.left_out;
   result.grid_error = plan.grid_error;
 }
@@ -107,74 +106,39 @@ void report_last_level_again(const Scene& scene, const LevelPlan& plan, const st
   report_level(scene, plan, plan.level_count() - 1, levels, result);
 }
 
-// How the work of writing is shared out: the streams, and of each file the encoding.
+// Of the work of making levels, the streams beside them; of that of writing, the streams that are drawn from; of what
+// is left, the encoding of levels.
+constexpr double kStreamsBesideShare = 0.25;
 constexpr double kStreamsShare = 0.3;
 constexpr double kEncodingShare = 0.9;
 
-/// How each mesh's stream is encoded.
-std::vector<CompactOptions> stream_options(const Scene& scene, const BuildOptions& build) {
-  const bool is_drawn = is_by_compact_streams(build.layout);
-  const AssetOptions storage = is_drawn ? build.storage : storage_of(scene, build);
-  const bool is_rounded = is_drawn || (!storage.position_grid && storage.compression != Compression::None);
-  std::vector<CompactOptions> options = compact_options(scene, storage);
-  const std::vector<bool> fit = fit_compact_streams(scene, storage);
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    options[i].coding = build.stream_coding;
-    options[i].lossless = build.lossless || !is_rounded || !fit[i];
-  }
-  return options;
-}
-
-/// Places levels of compact streams closer to the meshes.
-struct Placer {
-  MeasuredScene& measured;
-  SceneFitter& fitter;
-};
-constexpr double kPlacingShare = 0.7;  // of the work on a compact stream; the rest is encoding
-
-/// `placer`: null where the vertices of levels stay where they are. `is_alone`: it is all that shows a picture.
-Result<std::vector<std::byte>> encode(std::size_t i, const ProgressiveMesh& mesh, CompactOptions options,
-                                      const Placer* placer, bool is_alone, const Progress& progress) {
-  std::vector<PlacedLevel> placed;
-  const double placing = placer != nullptr && !options.lossless ? kPlacingShare : 0;
-  if (placing > 0) placed = placer->fitter.placed(i, placer->measured.original(i), progress.part(placing));
-  if (!progress.reach(placing)) return cancelled();
-  options.progress = progress.part(1 - placing);
-  const MeasuredSurface* const original = placing > 0 ? &placer->measured.original(i) : nullptr;
-  LODESTONE_TRY(CompactStream stream, is_alone && !options.lossless
-                                          ? encode_early_picture(mesh, options, std::move(placed), original)
-                                          : encode_compact(mesh, options, placed));
-  return std::move(stream.bytes);
-}
-
-Result<std::vector<std::byte>> encode(const ProgressiveMesh& mesh, const Progress& progress) {
-  StreamOptions options;
-  options.progress = progress;
-  return encode_stream(mesh, options);
-}
-
-/// A mesh that is beyond the stream's limits goes without one; its levels do not need it, unless all but one are in it.
-/// What a compact stream does not hold, one of version 2 may, if the layout has such.
-Result<void> encode_streams(const Scene& scene, const BuildOptions& build, const Placer* placer,
-                            std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes,
-                            const Progress& progress) {
-  const std::vector<CompactOptions> options = stream_options(scene, build);
-  std::vector<Result<std::vector<std::byte>>> streams(levels.size());
-  for_each_in_parallel(levels.size(), [&](std::size_t i) {
-    const Progress part = progress.part(1 / static_cast<double>(levels.size()));
-    if (part.is_cancelled()) return;
-    const ProgressiveMesh& mesh = result.simplified[i].mesh;
-    streams[i] = encode(i, mesh, options[i], placer, build.layout == FileLayout::StreamAlone, part);
-    const bool is_held = streams[i] || streams[i].error().code == ErrorCode::Cancelled;
-    if (!is_held && !is_by_compact_streams(build.layout)) streams[i] = encode(mesh, part);
+/// Makes the levels, and beside them the streams of a file that has all levels, too: they need none of these.
+Result<std::vector<LeveledMesh>> make_levels_and_streams(MeasuredScene& measured, const BuildResult& result,
+                                                         const LevelPlan& plan, const BuildOptions& options,
+                                                         SceneFitter& fitter, Result<MeshStreams>& streams,
+                                                         const Progress& progress) {
+  const bool in_vain = options.strict && !is_met(plan);
+  if (!writes_streams(options) || is_by_compact_streams(options.layout) || in_vain)
+    return make_levels(measured, result.simplified, plan, fitter, progress);
+  SideJobs beside;
+  beside.add([&] {
+    streams = encode_streams(measured.scene(), result.simplified, options, nullptr, progress.part(kStreamsBesideShare));
   });
-  if (!progress.reach(1)) return cancelled();
-  for (std::size_t i = 0; i < levels.size(); ++i) {
+  auto levels = make_levels(measured, result.simplified, plan, fitter, progress.part(1 - kStreamsBesideShare));
+  beside.wait();
+  return levels;
+}
+
+/// Has meshes keep their streams. One that is beyond a stream's limits goes without; its levels do not need it, unless
+/// all but one are in it.
+Result<void> keep_streams(const Scene& scene, const BuildOptions& options, MeshStreams streams,
+                          std::vector<LeveledMesh>& levels, BuildResult& result, Notes& notes) {
+  for (std::size_t i = 0; i < streams.size(); ++i) {
     const std::string name = text("mesh '", scene.meshes()[i].name, "'");
     if (streams[i]) {
       result.meshes[i].stream.bytes = streams[i]->size();
       levels[i].stream = std::move(*streams[i]);
-    } else if (!is_by_compact_streams(build.layout) && streams[i].error().code == ErrorCode::LimitExceeded) {
+    } else if (!is_by_compact_streams(options.layout) && streams[i].error().code == ErrorCode::LimitExceeded) {
       notes.add(text(name, " has no removal stream: ", streams[i].error().message));
     } else {
       return fail(streams[i].error().code, text(name, ": ", streams[i].error().message));
@@ -373,7 +337,9 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
   MeasuredScene measured(scene);
   const Progress making = stage_progress(observer, BuildStage::MakingLevels);
   LevelPlan plan = plan_levels(measured, result.simplified, options, fitter, making.part(0));
-  LODESTONE_TRY(std::vector<LeveledMesh> levels, make_levels(measured, result.simplified, plan, fitter, making));
+  Result<MeshStreams> streams;
+  LODESTONE_TRY(std::vector<LeveledMesh> levels,
+                make_levels_and_streams(measured, result, plan, options, fitter, streams, making));
   if (options.layout == FileLayout::Refined) {
     for (std::size_t i = 0; i < levels.size(); ++i)
       keep_every_material(scene.meshes()[i].mesh, levels[i].levels.back().mesh);
@@ -384,13 +350,14 @@ Result<BuildResult> build_asset(const Scene& scene, const BuildOptions& given, B
 
   const Progress writing = stage_progress(observer, BuildStage::Writing);
   if (options.layout == FileLayout::StreamAlone) name_materials(options.material_numbers, result.simplified[0].mesh);
-  if (writes_streams(options)) {
-    // With all levels beside it, a stream is not what is drawn from.
-    const bool places = is_by_compact_streams(options.layout) && given.placement == Placement::Optimised;
-    const Placer placer = {measured, fitter};
-    LODESTONE_CHECK(
-        encode_streams(scene, options, places ? &placer : nullptr, levels, result, notes, writing.part(kStreamsShare)));
+  if (is_by_compact_streams(options.layout)) {
+    const bool places = given.placement == Placement::Optimised;
+    const StreamPlacer placer = {measured, fitter};
+    streams =
+        encode_streams(scene, result.simplified, options, places ? &placer : nullptr, writing.part(kStreamsShare));
   }
+  if (!streams) return tl::unexpected(streams.error());
+  LODESTONE_CHECK(keep_streams(scene, options, std::move(*streams), levels, result, notes));
   if (options.layout == FileLayout::Refined && options.targets.size() == 1 && options.targets[0].is_wish) {
     LODESTONE_TRY(const bool is_coarser,
                   fit_first_picture(measured, result.simplified, options, fitter, writing.part(0), plan, levels));

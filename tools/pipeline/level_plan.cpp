@@ -101,6 +101,12 @@ bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplifi
   return plan.choices[level].positions[mesh] == simplified[mesh].mesh.record_count();
 }
 
+bool is_met(const LevelPlan& plan) {
+  const auto met = [](const auto& entry) { return entry.met; };
+  return std::all_of(plan.choices.begin(), plan.choices.end(), met) &&
+         std::all_of(plan.left_out.begin(), plan.left_out.end(), met);
+}
+
 LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,
                       const BuildOptions& options, SceneFitter& fitter, const Progress& progress) {
   const Scene& scene = measured.scene();

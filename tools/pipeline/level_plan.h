@@ -30,6 +30,9 @@ struct LevelPlan {
 bool is_whole(const LevelPlan& plan, const std::vector<SimplifyResult>& simplified, std::size_t mesh,
               std::size_t level);
 
+/// Whether levels answer all targets.
+bool is_met(const LevelPlan& plan);
+
 /// Finds each mesh's positions: the whole scene, then what answers the targets, within the limit. What would repeat the
 /// level before is left out.
 LevelPlan plan_levels(MeasuredScene& measured, const std::vector<SimplifyResult>& simplified,

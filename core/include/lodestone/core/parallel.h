@@ -24,24 +24,25 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
 void for_each_chunk(std::size_t count, std::size_t chunk_size,
                     const std::function<void(std::size_t begin, std::size_t end)>& job);
 
-/// A job that is done while its owner goes on, by another of the threads that loops share, if one has time before the
-/// owner waits for it. One after the other.
-class SideJob {
+/// Jobs that are done one after the other while their owner goes on: by another of the threads that loops share where
+/// one has time, and by the owner where it waits for what nobody has begun.
+class SideJobs {
  public:
-  SideJob() = default;
-  SideJob(const SideJob&) = delete;
-  SideJob& operator=(const SideJob&) = delete;
-  /// Waits; what the job throws is lost.
-  ~SideJob();
+  SideJobs();
+  SideJobs(const SideJobs&) = delete;
+  SideJobs& operator=(const SideJobs&) = delete;
+  /// Waits for all; what they throw is lost.
+  ~SideJobs();
 
-  /// Has `job` done, at once where there are no other threads. Pre: the one before it was waited for.
-  void start(std::function<void()> job);
-  /// Returns when the job is done: does it, if nobody has begun. What it throws is thrown here. Without one, nothing.
-  void wait();
+  /// Adds a job; does it at once where there are no other threads.
+  void add(std::function<void()> job);
+  /// Returns when no more than so many are left to be done. What a job threw is thrown here, and those after it are not
+  /// done.
+  void wait(std::size_t most_left = 0);
 
  private:
-  struct Task;
-  std::shared_ptr<Task> task_;
+  struct Queue;
+  std::shared_ptr<Queue> queue_;
 };
 
 }  // namespace lodestone
