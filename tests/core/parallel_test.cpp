@@ -1,5 +1,6 @@
 #include <lodestone/core/parallel.h>
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <string>
@@ -100,6 +101,74 @@ TEST_CASE("the exception of the lowest job that throws reaches the caller, throu
       CHECK(thrown_by([&] { with_threads(threads, [&] { for_each_in_parallel(100, fail_from(first)); }); }) ==
             expected);
     }
+}
+
+TEST_CASE("side jobs are done in their order, one at a time, while their owner goes on with loops of its own") {
+  for (const std::size_t threads : {0, 1, 2, 4}) {
+    CAPTURE(threads);
+    std::vector<int> done;
+    std::vector<int> counts(64, 0);
+    std::atomic<int> running{0};
+    bool any_beside = false;  // another one
+    with_threads(threads, [&] {
+      SideJobs jobs;
+      for (int i = 0; i < 20; ++i) {
+        jobs.add([&, i] {
+          any_beside = any_beside || ++running > 1;
+          for_each_in_parallel(8, [&](std::size_t) { std::this_thread::yield(); });
+          done.push_back(i);
+          --running;
+        });
+        for_each_in_parallel(counts.size(), [&](std::size_t k) { ++counts[k]; });
+      }
+      jobs.wait();
+      CHECK(done.size() == 20);
+      jobs.wait();
+    });
+    CHECK(std::is_sorted(done.begin(), done.end()));
+    CHECK_FALSE(any_beside);
+    CHECK(counts == std::vector<int>(counts.size(), 20));
+  }
+}
+
+TEST_CASE("an owner waits until so many side jobs are left, and its end until none is") {
+  for (const std::size_t threads : {1, 2}) {
+    std::atomic<std::size_t> done{0};
+    with_threads(threads, [&] {
+      SideJobs jobs;
+      for (std::size_t i = 0; i < 10; ++i) jobs.add([&] { ++done; });
+      jobs.wait(4);
+      CHECK(done >= 6);
+    });
+    CHECK(done == 10);
+  }
+}
+
+TEST_CASE("one thread does side jobs when they are added") {
+  with_threads(1, [] {
+    SideJobs jobs;
+    bool done = false;
+    jobs.add([&] { done = true; });
+    CHECK(done);
+  });
+}
+
+TEST_CASE("what a side job throws its owner hears, once, and those after it are not done") {
+  for (const std::size_t threads : {1, 2, 4}) {
+    CAPTURE(threads);
+    bool went_on = false, begins_anew = false;
+    with_threads(threads, [&] {
+      SideJobs jobs;
+      jobs.add([] { throw std::runtime_error("job"); });
+      jobs.add([&] { went_on = true; });
+      CHECK(thrown_by([&] { jobs.wait(); }) == "job");
+      jobs.add([&] { begins_anew = true; });
+      CHECK(thrown_by([&] { jobs.wait(); }).empty());
+      jobs.add([] { throw std::runtime_error("lost"); });
+    });
+    CHECK_FALSE(went_on);
+    CHECK(begins_anew);
+  }
 }
 
 }  // namespace lodestone::test

@@ -20,6 +20,7 @@
 namespace lodestone::test {
 namespace {
 
+using detail::FaceChange;
 using detail::LevelDeviation;
 
 constexpr std::size_t kMostFaces = kReduced ? 60 : 160;  // of what is measured against all pairs of faces
@@ -45,7 +46,8 @@ class Shrinking {
       const RemovalRecord record = remove_any(connectivity_, random_);
       if (record.vertex == kNoIndex) break;
       any = true;
-      for (LevelDeviation* deviation : told) deviation->add(record, detail::displacement_bound(mesh_, record));
+      const FaceChange change = changes_.add(record, detail::displacement_bound(mesh_, record));
+      for (LevelDeviation* deviation : told) deviation->add(change);
     }
     return any;
   }
@@ -63,11 +65,11 @@ class Shrinking {
     double reach = 0;
     for (const RemovalRecord& record : records)
       reach = std::max(reach, length(Vec3(mesh_.positions[record.vertex]) - Vec3(mesh_.positions[near])));
-    for (LevelDeviation* deviation : told)
-      deviation->add_vanished(records, face_of_corner(connectivity_.corner_at(near)), reach);
+    const FaceChange change = changes_.add_vanished(records, face_of_corner(connectivity_.corner_at(near)), reach);
+    for (LevelDeviation* deviation : told) deviation->add(change);
   }
 
-  /// What is left.
+  LevelDeviation::Level left() const { return {mesh_, connectivity_}; }
   Mesh level() const {
     std::vector<Index> corners;
     for (Index c = 0; c < mesh_.corner_wedge.size(); ++c)
@@ -79,6 +81,7 @@ class Shrinking {
   Mesh mesh_;
   Connectivity connectivity_;
   detail::Pieces pieces_;
+  detail::FaceChanges changes_;
   std::vector<bool> gone_ = std::vector<bool>(pieces_.count());
   Random random_;
 };
@@ -112,7 +115,7 @@ TEST_CASE("each way, the maximum lies between its bounds as all pairs of faces h
       const SampledSupremum there = brute_force(shrinking.mesh(), level), back = brute_force(level, shrinking.mesh());
       CHECK(deviation.bound() >= std::max(there.low, back.low) * (1 - 1e-9) - 1e-12);
       if (step % 2 == 0) {
-        const Deviation found = deviation.measure(shrinking.connectivity());
+        const Deviation found = deviation.measure(shrinking.left());
         check_contains(found.forward, there);
         check_contains(found.backward, back);
         CHECK(found.maximum_bound() <= allowed(found.maximum(), {}, diagonal_of(shrinking.mesh())));
@@ -132,17 +135,17 @@ TEST_CASE("measured again and again, what removals leave is as far away as measu
     const double diagonal = diagonal_of(shrinking.mesh());
     LevelDeviation deviation(shrinking.mesh(), options), often(shrinking.mesh(), options);
     LevelDeviation* const told[] = {&deviation, &often};
-    CHECK(deviation.measure(shrinking.connectivity()).maximum_bound() <= allowed(0, {}, diagonal));
+    CHECK(deviation.measure(shrinking.left()).maximum_bound() <= allowed(0, {}, diagonal));
     const MeasuredSurface original(shrinking.mesh());
     const std::size_t some = std::max<std::size_t>(shrinking.mesh().vertex_count() / 20, 1);
     for (int i = 0; i < (kReduced ? 6 : 16) && shrinking.shrink(some, told); ++i) {
-      often.measure(shrinking.connectivity());
+      often.measure(shrinking.left());
       if (i % 3 == 1) continue;
       const Mesh level = shrinking.level();
       INFO(shape.name << ", level of " << level.face_count() << " faces");
       const Deviation alone = measure_maximum(original, MeasuredSurface(level), options);
-      const Deviation found = deviation.measure(shrinking.connectivity());
-      const Deviation again = often.measure(shrinking.connectivity());
+      const Deviation found = deviation.measure(shrinking.left());
+      const Deviation again = often.measure(shrinking.left());
       for (const Deviation* one : {&found, &again}) {
         CHECK(overlap(*one, alone));
         CHECK(one->maximum_bound() <= allowed(one->maximum(), options, diagonal));
@@ -163,9 +166,9 @@ TEST_CASE("a spent budget, or a measurement that is cancelled, gives a bound tha
     for (int i = 0; shrinking.shrink(3, told); ++i) {
       INFO(shape.name << ", level of " << shrinking.connectivity().face_count() << " faces");
       is_wanted = i % 2 == 0;
-      const Deviation exact = narrow.measure(shrinking.connectivity());
-      CHECK(overlap(exact, wide.measure(shrinking.connectivity())));
-      CHECK(overlap(exact, ended.measure(shrinking.connectivity())));
+      const Deviation exact = narrow.measure(shrinking.left());
+      CHECK(overlap(exact, wide.measure(shrinking.left())));
+      CHECK(overlap(exact, ended.measure(shrinking.left())));
     }
   }
 }
