@@ -20,16 +20,16 @@ DeviationOptions measuring_options(const Progress& progress) {
   DeviationOptions options;
   options.relative_tolerance = 0.01;
   options.budget = 100'000;
-  options.progress = progress.part(0);
+  options.progress = progress;
   return options;
 }
 
 }  // namespace
 
 DeviationBounds::DeviationBounds(const Mesh& full, double step, const Progress& progress)
-    : full_(&full), step_(step), measured_faces_(full.face_count()), moved_(0) {
-  if (step > 0 && progress.add(0))
-    level_.emplace(full, measuring_options(progress));
+    : full_(&full), step_(step), progress_(progress.part(0)), measured_faces_(full.face_count()), moved_(0) {
+  if (step > 0 && progress_.add(0))
+    level_.emplace(full, measuring_options(progress_));
   else
     moved_ = FaceReach(full.face_count());
   bound_.reserve(full.vertex_count());
@@ -77,6 +77,7 @@ void DeviationBounds::settle_all() {
 }
 
 void DeviationBounds::measure(const LevelDeviation::Level& level) {
+  if (progress_.is_cancelled()) return;  // many levels may wait
   level_->measure(level);
   bound_.back() = round_up(std::min(static_cast<double>(bound_.back()), bound()));
 }

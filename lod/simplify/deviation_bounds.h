@@ -62,6 +62,7 @@ class DeviationBounds {
 
   const Mesh* full_;
   double step_;
+  Progress progress_;  // hears
   std::size_t measured_faces_;
   bool vanished_ = false;  // whether a piece has since it was measured
   double least_ = 0;       // > 0 once nothing is left
