@@ -144,7 +144,9 @@ void BuildCommand::add_run_options(CLI::App& app) {
   app.add_option("--report", report, "Write a JSON report")->type_name("R.json");
   app.add_option("--html", html, "Write a page that shows the levels, their errors and where these are")
       ->type_name("P.html");
-  app.add_option("--effort", effort, "How much work the result is worth: 1 is the fastest, 9 the best (default 5)")
+  app.add_option("--effort", effort,
+                 "How much work the result is worth: 1 is the fastest, a draft whose bounds are less tight; 9 the best "
+                 "(default 5)")
       ->check(CLI::Range(kLeastEffort, kMostEffort))
       ->type_name("N");
   app.add_option("--threads", thread_count, "Use at most so many threads (default: all cores); the result is the same")
@@ -225,7 +227,7 @@ void BuildCommand::add_profile_options(CLI::App& app) {
   app.add_option(
          "--stream-coding", stream_coding,
          "How the stream's bits are coded: small, in the fewest bytes (default), or fast, decoded in two fifths of "
-         "the time at 3 to 6 % more bytes")
+         "the time at 3 to 6 % more bytes (default at --effort 1 and 2)")
       ->check(CLI::IsMember({"small", "fast"}))
       ->type_name("NAME")
       ->excludes(none)

@@ -47,10 +47,10 @@ struct BuildCommand {
   std::string profile = "msft-lod";
   bool no_stream = false;
   bool lossless = false;
-  std::string stream_coding = "small";  ///< or "fast"
-  std::string compression = "draco";    ///< or "meshopt", "none"
-  std::optional<int> position_bits;     ///< unset: 14, or what the shape needs
-  std::optional<double> grid_step;      ///< in place of bits
+  std::optional<std::string> stream_coding;  ///< "small" or "fast"; unset: by effort
+  std::string compression = "draco";         ///< or "meshopt", "none"
+  std::optional<int> position_bits;          ///< unset: 14, or what the shape needs
+  std::optional<double> grid_step;           ///< in place of bits
   std::vector<double> grid_origin{0, 0, 0};
   int effort = kDefaultEffort;
   std::size_t thread_count = 0;  ///< 0: as many as the machine has cores

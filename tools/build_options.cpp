@@ -212,7 +212,8 @@ Result<BuildOptions> build_options(const BuildCommand& command) {
   if (writes_stream_file(command)) options.layout = FileLayout::StreamAlone;
   options.stream = !command.no_stream;
   options.lossless = command.lossless;
-  options.stream_coding = command.stream_coding == "fast" ? CompactCoding::Fast : CompactCoding::Small;
+  if (command.stream_coding)
+    options.stream_coding = *command.stream_coding == "fast" ? CompactCoding::Fast : CompactCoding::Small;
   options.strict = command.strict;
   options.keep_levels = command.html.has_value() || writes_mesh_file(command);
   LODESTONE_TRY(options.storage, asset_options(command));
@@ -240,7 +241,7 @@ Json settings_json(const BuildCommand& options, const BuildOptions& understood) 
                {"settings", options.settings ? Json(options.settings->string()) : Json(nullptr)},
                {"stream", writes_stream(options)},
                {"lossless", options.lossless},
-               {"stream_coding", options.stream_coding},
+               {"stream_coding", stream_coding_of(understood) == CompactCoding::Fast ? "fast" : "small"},
                {"compression", has_own_form ? Json(nullptr) : Json(options.compression)}};
   const bool has_grid = compression_of(options.compression) != Compression::None;
   const bool has_bits = has_grid && options.position_bits;

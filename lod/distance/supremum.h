@@ -125,6 +125,8 @@ class SupremumSearch {
   bool is_open(Index face, const Goal& goal) const { return bounds_.faces[face] > goal.threshold(); }
   Corners corners_of(Index face) const;
   double bound_by_corners(const Corners& corners, const Goal& goal) const;
+  Index face_facing(const Corners& corners) const;
+  double bound_by_face(const Corners& corners, Index face, const Goal& goal) const;
   double bound_by_patch(const Corners& corners, const Goal& goal);
   Index face_at_centre(const Corners& corners, Index from_face, Goal& goal);
   void visit_face(Index face, Goal& goal);

@@ -64,17 +64,20 @@ constexpr double kFarAtFirst = 1;  // of the mean distance: from there on a samp
 constexpr std::size_t kSamplesOfStep = 1024;  // looked up together, between two words about the progress
 constexpr double kFirstShare = 0.2;           // of the work: to find where each sample belongs
 
-// What a level is worth, by effort. Edges are turned in the first iterations, and the vertices follow. Large levels
-// settle sooner, and each iteration of theirs costs more: where there are more than so many samples there are fewer.
+// What a level is worth, by effort. Many faces of a fine level are the original's own: fitting it costs most and gains
+// least, so that the least efforts leave it out. Edges are turned in the first iterations, and the vertices follow.
+// Large levels settle sooner, and each iteration of theirs costs more: where there are more than so many samples there
+// are fewer.
 struct Effort {
   int moves;                     // of all vertices, at most
   int turning;                   // of them with edges turned
   double settled;                // of the sum before: less gain than this is not worth another
   std::size_t samples_per_face;  // of the level, at most: where the original has more, some are left out
   int search_every;              // so many iterations, in place of following samples; 0: never again
+  double finest = 1;             // of the original's faces: a level of more than this share stays as it is
 };
-constexpr std::array<Effort, kMostEffort> kEfforts = {{{1, 1, 0.9, 8, 0},
-                                                       {2, 1, 0.9, 10, 0},
+constexpr std::array<Effort, kMostEffort> kEfforts = {{{1, 1, 0.9, 4, 0, 0.2},
+                                                       {2, 1, 0.9, 10, 0, 0.3},
                                                        {4, 3, 0.97, 15, 0},
                                                        {8, 5, 0.98, 20, 5},
                                                        {24, 6, 0.99, 30, 5},
@@ -94,6 +97,12 @@ Effort effort_for(int wanted, std::size_t sample_count) {
   effort.turning = std::max(effort.turning / kFewerTurning, 1);
   effort.settled = 1 - kSettledSooner * (1 - effort.settled);
   return effort;
+}
+
+/// Whether fitting a level is worth it.
+bool is_worth_fitting(const Mesh& level, const Mesh& original, int effort) {
+  return static_cast<double>(level.face_count()) <=
+         effort_for(effort, 0).finest * static_cast<double>(original.face_count());
 }
 
 // At so many points of the original, spread over its faces, a fit is compared with what was there before: so many of
@@ -638,7 +647,7 @@ LevelFitter& LevelFitter::operator=(LevelFitter&&) noexcept = default;
 Mesh LevelFitter::fit(const Mesh& level, const PlacementOptions& options) const {
   Mesh fitted = compacted(level);
   if (fitted.face_count() == 0 || impl_->original.mesh.face_count() == 0) return fitted;
-  if (!impl_->attributes) return fitted;
+  if (!impl_->attributes || !is_worth_fitting(fitted, impl_->original.mesh, options.effort)) return fitted;
   Mesh before = fitted;
   Fitting(impl_->original, fitted, options, Freedom::All).run();
   if (options.progress.is_cancelled()) return before;

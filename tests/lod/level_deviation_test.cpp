@@ -198,7 +198,7 @@ TEST_CASE("bounds stay true over many measurements that leave most faces unlooke
       const Deviation alone = measure_maximum(original, MeasuredSurface(level), close);
       for (LevelDeviation& deviation : all) {
         CHECK(alone.maximum() <= deviation.bound() + 1e-12);
-        CHECK(alone.maximum() <= deviation.measure(shrinking.connectivity()).maximum_bound() + 1e-12);
+        CHECK(alone.maximum() <= deviation.measure(shrinking.left()).maximum_bound() + 1e-12);
       }
     }
   }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lodestone/core/parallel.h>
+#include <lodestone/lod/cursor.h>
 
 #include "support/catch.h"
 #include "support/data.h"
@@ -15,9 +17,11 @@
 namespace lodestone::test {
 namespace {
 
-Scene ball_scene() {
-  return Scene::from_mesh({assemble(icosphere(kReduced ? 2 : 3, 0.02, 7))->mesh, {}, {}, {}, {}}, "ball").value();
+Scene scene_of(const TriangleSoup& soup) {
+  return Scene::from_mesh({assemble(soup)->mesh, {}, {}, {}, {}}, "shape").value();
 }
+
+Scene ball_scene() { return scene_of(icosphere(kReduced ? 2 : 3, 0.02, 7)); }
 
 /// Keeps what a build says, and wants no more from some call on.
 struct Watcher : BuildObserver {
@@ -204,6 +208,65 @@ TEST_CASE("each effort makes the levels asked for, with bounds that hold") {
     for (std::size_t i = 1; i < built->levels.size(); ++i) {
       CHECK(built->levels[i].face_count <= built->levels[i - 1].face_count / 2);
       CHECK(built->levels[i].deviation.maximum() <= 1.0001 * static_cast<double>(built->levels[i].deviation_bound));
+    }
+  }
+}
+
+TEST_CASE("what a build says of errors is true at the least efforts, and as tight as they promise") {
+  for (const TriangleSoup& soup : {icosphere(kReduced ? 2 : 4, 0.02, 7), terrain(kReduced ? 12 : 40, 3),
+                                   torus(kReduced ? 12 : 32, 16), cube(kReduced ? 4 : 10), seam_sphere(24, 16)}) {
+    const Scene scene = scene_of(soup);
+    const Mesh& whole = scene.meshes()[0].mesh;
+    for (const auto& [effort, tolerance] : {std::pair{1, 0.1}, std::pair{2, 0.05}}) {
+      BuildOptions options;
+      options.effort = effort;
+      options.keep_levels = true;
+      const auto built = build_asset(scene, options);
+      REQUIRE(built);
+      for (std::size_t i = 0; i < built->levels.size(); ++i) {
+        CAPTURE(effort, whole.face_count(), i);
+        const Deviation said = built->meshes[0].levels[i].deviation;
+        const Deviation really = measure_deviation(whole, built->decoded[0].levels[i].mesh);
+        CHECK(said.maximum_bound() >= really.maximum());
+        CHECK(said.maximum() <= really.maximum_bound());
+        CHECK(said.maximum_bound() <= (1 + tolerance) * said.maximum() + 1e-6 * bounding_box(whole).diagonal());
+        const ProgressiveMesh& stream = built->simplified[0].mesh;
+        const auto position = static_cast<Index>(stream.record_count() / (i + 2));
+        const auto bound = static_cast<double>(stream.deviation[position]);
+        CHECK(bound >= measure_deviation(whole, extract_level(stream, position)).maximum());
+      }
+    }
+  }
+}
+
+TEST_CASE("no effort takes fewer samples than a smaller one, of a level") {
+  const Scene scene = ball_scene();
+  std::size_t before = 0;
+  for (int effort = kLeastEffort; effort <= kMostEffort; ++effort) {
+    CAPTURE(effort);
+    BuildOptions options;
+    options.effort = effort;
+    options.placement = Placement::Subset;
+    options.stream = false;
+    options.targets = ratio_targets(0.5, 1);
+    const auto built = build_asset(scene, options);
+    REQUIRE(built);
+    const OneSidedDeviation& forward = built->levels[0].deviation.forward;
+    CHECK(forward.sample_count >= before);
+    before = forward.sample_count;
+  }
+}
+
+TEST_CASE("streams are coded fast by the least efforts, where nothing else is asked for") {
+  BuildOptions options;
+  for (const auto& [effort, coding] : {std::pair{1, CompactCoding::Fast}, std::pair{2, CompactCoding::Fast},
+                                       std::pair{3, CompactCoding::Small}, std::pair{9, CompactCoding::Small}}) {
+    options.effort = effort;
+    options.stream_coding.reset();
+    CHECK(stream_coding_of(options) == coding);
+    for (const CompactCoding asked : {CompactCoding::Small, CompactCoding::Fast}) {
+      options.stream_coding = asked;
+      CHECK(stream_coding_of(options) == asked);
     }
   }
 }

@@ -1,6 +1,9 @@
 // Streams in files of their own: what build writes, the other commands read.
 
 #include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -100,6 +103,26 @@ TEST_CASE("streams are coded small or fast, as asked, and inspect says which") {
   CHECK(json["streams"][0]["version"] == "3.1");
   CHECK(json["streams"][0]["coding"] == "fast");
   CHECK(run_program({"build", small, fast, "--stream-coding", "quick", "-q"}).exit_code == 1);
+}
+
+TEST_CASE("the least efforts code streams fast, unless they are told to, and reports say what was done") {
+  const ScratchDirectory folder;
+  build_ball(folder);
+  const std::string ball = (folder / "ball.obj").string(), stream = (folder / "draft.lods").string();
+  const std::string report = (folder / "draft.json").string();
+  const auto coding_of = [&](std::vector<std::string> arguments) {
+    std::vector<std::string> all = {"build", ball, stream, "-q", "--report", report};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    REQUIRE(run_program(all).exit_code == 0);
+    const auto inspected = nlohmann::json::parse(run_program({"inspect", stream, "--stream", "--json"}).out);
+    const auto said = nlohmann::json::parse(std::ifstream(report))["settings"]["stream_coding"];
+    CHECK(inspected["streams"][0]["coding"] == said);
+    return said.get<std::string>();
+  };
+  CHECK(coding_of({"--effort", "1"}) == "fast");
+  CHECK(coding_of({"--effort", "2"}) == "fast");
+  CHECK(coding_of({"--effort", "3"}) == "small");
+  CHECK(coding_of({"--effort", "1", "--stream-coding", "small"}) == "small");
 }
 
 TEST_CASE("inspect --stream tells what parts and rounds of a stream take, and they add up to the file") {

@@ -126,6 +126,7 @@ Result<std::vector<LeveledMesh>> make_levels_and_streams(MeasuredScene& measured
   });
   auto levels = make_levels(measured, result.simplified, plan, fitter, progress.part(1 - kStreamsBesideShare));
   beside.wait();
+  if (progress.is_cancelled()) return cancelled();  // the streams by the last that was heard
   return levels;
 }
 

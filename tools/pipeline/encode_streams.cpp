@@ -47,7 +47,7 @@ std::vector<CompactOptions> stream_options(const Scene& scene, const BuildOption
   std::vector<CompactOptions> options = compact_options(scene, storage);
   const std::vector<bool> fit = fit_compact_streams(scene, storage);
   for (std::size_t i = 0; i < options.size(); ++i) {
-    options[i].coding = build.stream_coding;
+    options[i].coding = stream_coding_of(build);
     options[i].lossless = build.lossless || !is_rounded || !fit[i];
   }
   return options;

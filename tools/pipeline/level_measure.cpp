@@ -12,11 +12,8 @@
 namespace lodestone::detail {
 namespace {
 
-// Two digits for a table and a report, in a fraction of the time that `compare` takes for its four.
-constexpr double kSceneSamples = 20'000;           // Each way, for a level of all meshes together.
-constexpr double kSceneAttributeSamples = 40'000;  // For attributes, whose largest differences stand at few places.
-constexpr double kDistancesShare = 0.9;            // of the work; attributes are the rest
-constexpr double kLeastShare = 0.02;               // Of them for one mesh: its own numbers need some, too.
+constexpr double kDistancesShare = 0.9;  // of the work; attributes are the rest
+constexpr double kLeastShare = 0.02;     // Of the samples for one mesh: its own numbers need some, too.
 
 /// How much of a scene's samples a mesh gets, by its faces: many small meshes cost little more than one large one.
 double share_of_samples(const Scene& scene, const Mesh& mesh) {
@@ -25,26 +22,31 @@ double share_of_samples(const Scene& scene, const Mesh& mesh) {
   return std::max(static_cast<double>(mesh.face_count()) / static_cast<double>(all), kLeastShare);
 }
 
-DeviationOptions level_measure(const Progress& progress, double share = 1) {
+std::size_t part_of(std::size_t sample_count, double share) {
+  return static_cast<std::size_t>(share * static_cast<double>(sample_count));
+}
+
+DeviationOptions level_measure(const BuildEffort& effort, const Progress& progress, double share = 1) {
   DeviationOptions options;
   options.progress = progress;
-  options.sample_count = static_cast<std::size_t>(share * kSceneSamples);
-  options.relative_tolerance = 0.01;
+  options.sample_count = part_of(effort.distance_samples, share);
+  options.relative_tolerance = effort.tolerance;
   options.each_way = false;
   return options;
 }
 
-void measure_level(const Scene& scene, const MeasuredSurface& original, const Mesh& level, const Progress& progress,
-                   BuildResult::MeshPart::Level& reported) {
+void measure_level(const Scene& scene, const MeasuredSurface& original, const Mesh& level, const BuildEffort& effort,
+                   const Progress& progress, BuildResult::MeshPart::Level& reported) {
   const Mesh& whole = original.mesh();
   reported.vertex_count = level.vertex_count();
   if (!progress.add(0)) return;  // preparing both takes long enough
   const MeasuredSurface surface(level);
   if (!progress.add(0)) return;
   const double share = share_of_samples(scene, whole);
-  reported.deviation = measure_deviation(original, surface, level_measure(progress.part(kDistancesShare), share));
-  reported.attributes = measure_attributes(whole, surface, static_cast<std::size_t>(share * kSceneAttributeSamples),
-                                           progress.part(1 - kDistancesShare));
+  reported.deviation =
+      measure_deviation(original, surface, level_measure(effort, progress.part(kDistancesShare), share));
+  reported.attributes =
+      measure_attributes(whole, surface, part_of(effort.attribute_samples, share), progress.part(1 - kDistancesShare));
 }
 
 /// Adds up what the meshes' levels deviate.
@@ -63,12 +65,13 @@ void total_level(const Scene& scene, std::size_t number, BuildResult& result) {
 
 }  // namespace
 
-bool lies_within(const MeasuredSurface& a, const Mesh& b, double limit, const Progress& progress) {
-  return measure_maximum(a, MeasuredSurface(b), level_measure(progress), limit).maximum_bound() <= limit;
+bool lies_within(const MeasuredSurface& a, const Mesh& b, double limit, const BuildEffort& effort,
+                 const Progress& progress) {
+  return measure_maximum(a, MeasuredSurface(b), level_measure(effort, progress), limit).maximum_bound() <= limit;
 }
 
-double measured_maximum(const MeasuredSurface& a, const Mesh& b, const Progress& progress) {
-  return measure_maximum(a, MeasuredSurface(b), level_measure(progress)).maximum_bound();
+double measured_maximum(const MeasuredSurface& a, const Mesh& b, const BuildEffort& effort, const Progress& progress) {
+  return measure_maximum(a, MeasuredSurface(b), level_measure(effort, progress)).maximum_bound();
 }
 
 Result<void> measure_levels(MeasuredScene& measured, const LevelPlan& plan, const BuildOptions& options,
@@ -87,7 +90,8 @@ Result<void> measure_levels(MeasuredScene& measured, const LevelPlan& plan, cons
     const bool is_as_it_was = options.storage.compression == Compression::None &&
                               !is_by_compact_streams(options.layout) && is_whole(plan, result.simplified, mesh, number);
     if (!is_as_it_was && (level == 0 || !plan.repeats(mesh, number)))
-      measure_level(scene, measured.original(mesh), meshes[mesh][level].mesh, part, result.meshes[mesh].levels[number]);
+      measure_level(scene, measured.original(mesh), meshes[mesh][level].mesh, build_effort(options.effort), part,
+                    result.meshes[mesh].levels[number]);
     part.reach(1);
   });
   if (!progress.reach(1)) return cancelled();

@@ -3,15 +3,17 @@
 #include <cstddef>
 #include <vector>
 
+#include "pipeline/build_effort.h"
 #include "pipeline/level_plan.h"
 
 namespace lodestone::detail {
 
 /// Whether the two surfaces are nowhere farther from each other than `limit`, in mesh units.
-bool lies_within(const MeasuredSurface& a, const Mesh& b, double limit, const Progress& progress);
+bool lies_within(const MeasuredSurface& a, const Mesh& b, double limit, const BuildEffort& effort,
+                 const Progress& progress);
 
 /// Returns a bound on how far the two surfaces are from each other anywhere, in mesh units.
-double measured_maximum(const MeasuredSurface& a, const Mesh& b, const Progress& progress);
+double measured_maximum(const MeasuredSurface& a, const Mesh& b, const BuildEffort& effort, const Progress& progress);
 
 /// Which of a plan's levels one of its files holds.
 struct FileLevels {

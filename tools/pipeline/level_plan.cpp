@@ -8,6 +8,7 @@
 
 #include <lodestone/lod/cursor.h>
 
+#include "pipeline/build_effort.h"
 #include "pipeline/level_measure.h"
 
 namespace lodestone::detail {
@@ -45,7 +46,7 @@ double measured_error(MeasuredScene& measured, const SimplifyResult& simplified,
                       SceneFitter& fitter, const Progress& progress) {
   Mesh level = extract_level(simplified.mesh, position);
   if (fitter.fits(mesh)) level = fitter.fitted(mesh, level, progress);
-  return measured_maximum(measured.original(mesh), level, progress);
+  return measured_maximum(measured.original(mesh), level, fitter.effort(), progress);
 }
 
 /// Returns what measures a mesh's levels, each once: all targets ask for the same ones.
@@ -60,8 +61,7 @@ std::function<double(Index)> error_meter(MeasuredScene& measured, const Simplify
 
 /// A stream alone has levels as it bounds them.
 int probe_count(const BuildOptions& options) {
-  if (options.effort < 7 || options.layout == FileLayout::StreamAlone) return 0;
-  return options.effort < 8 ? 2 : 4;
+  return options.layout == FileLayout::StreamAlone ? 0 : build_effort(options.effort).probe_count;
 }
 
 /// What they hold looks at the scene, the streams and the options.

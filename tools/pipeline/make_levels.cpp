@@ -36,7 +36,7 @@ AssetLevel make_level(const LevelSource& source, MeasuredScene& measured, SceneF
   if (!fitter.fits(source.mesh) || position == progressive.record_count()) return level;
   Mesh fitted = fitter.fitted(source.mesh, level.mesh, source.progress);
   const double bound = static_cast<double>(progressive.deviation[position]);
-  if (!source.by_error || lies_within(measured.original(source.mesh), fitted, bound, source.progress))
+  if (!source.by_error || lies_within(measured.original(source.mesh), fitted, bound, fitter.effort(), source.progress))
     level.mesh = std::move(fitted);
   return level;
 }

@@ -8,6 +8,7 @@
 #include <lodestone/lod/simplify.h>
 #include <lodestone/pipeline/build_options.h>
 
+#include "pipeline/build_effort.h"
 #include "pipeline/on_first_use.h"
 
 namespace lodestone::detail {
@@ -21,6 +22,8 @@ class SceneFitter {
   /// Whether a mesh's levels are fitted to it. Vertices of skinned and morphed meshes take their weights and targets
   /// with them, so those stay where they are.
   bool fits(std::size_t mesh) const;
+
+  const BuildEffort& effort() const { return build_effort(options_.effort); }
 
   /// Returns a level of a mesh fitted to it, all but the vertices that the options kept.
   Mesh fitted(std::size_t mesh, const Mesh& level, const Progress& progress);

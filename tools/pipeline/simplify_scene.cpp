@@ -7,6 +7,7 @@
 #include <lodestone/core/detail/try.h>
 #include <lodestone/core/parallel.h>
 
+#include "pipeline/build_effort.h"
 #include "pipeline/build_progress.h"
 #include "pipeline/level_plan.h"
 
@@ -29,16 +30,10 @@ StopCriteria stop_criteria(const Scene& scene, const SceneMesh& mesh, const Buil
   return stop;
 }
 
-/// How much of the faces goes between two measurements of what bounds are: the less work they may be, the more.
-double measure_step(int effort) {
-  if (effort <= 2) return 0.4;
-  return effort <= 4 ? 0.2 : 0.1;
-}
-
 Result<SimplifyOptions> options_for(const Scene& scene, const SceneMesh& mesh, const BuildOptions& build) {
   SimplifyOptions options = build.simplify;
   options.effort = build.effort;
-  options.measure_step = measure_step(build.effort);
+  options.measure_step = build_effort(build.effort).measure_step;
   if (is_by_compact_streams(build.layout)) options.dense_rounds = kStreamDenseRounds;
   options.stop = stop_criteria(scene, mesh, build);
   options.weights.target_reach = mesh.target_reach;

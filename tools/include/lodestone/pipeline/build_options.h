@@ -40,7 +40,7 @@ inline constexpr double kStreamDenseRounds = 1.53;
 
 /// What is built of a scene.
 struct BuildOptions {
-  int effort = kDefaultEffort;  ///< 1 … 9, see core/effort.h: of simplifying, of measuring bounds and of fitting levels
+  int effort = kDefaultEffort;  ///< 1 … 9, see core/effort.h: of simplifying, measuring, fitting and coding streams
   /// The levels after the whole scene, all of one kind; they may come in any order.
   std::vector<LevelTarget> targets = ratio_targets(0.5, 4);
   /// An error that no level goes beyond, where targets are of faces or epsilon: what stops first, stops.
@@ -57,14 +57,17 @@ struct BuildOptions {
   /// streams of what needs more than 16 bits for a position and, with all levels in one file, of what is not compressed
   /// or has a grid of a given step.
   bool lossless = false;
-  CompactCoding stream_coding = CompactCoding::Small;
-  bool strict = false;       ///< stop before anything is encoded where a target cannot be met
-  bool keep_levels = false;  ///< keep the levels as the files have them: see `BuildResult::decoded`
+  std::optional<CompactCoding> stream_coding;  ///< unset: by effort, fast up to 2 and small from 3 on
+  bool strict = false;                         ///< stop before anything is encoded where a target cannot be met
+  bool keep_levels = false;                    ///< keep the levels as the files have them: see `BuildResult::decoded`
   /// Of a stream alone: what its faces' materials are called, by number of the primitive; empty: as those.
   std::vector<Index> material_numbers;
   /// How it is stored. The build itself sets `keep_decoded` and, where levels are by error, `position_error`.
   /// With a file for each level, level i's `gltf_name` ends in "_LODi".
   AssetOptions storage;
 };
+
+/// Returns how a build codes its streams. Pre: the effort is one there is.
+CompactCoding stream_coding_of(const BuildOptions& options);
 
 }  // namespace lodestone
