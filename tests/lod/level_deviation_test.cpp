@@ -179,7 +179,7 @@ TEST_CASE("bounds stay true over many measurements that leave most faces unlooke
   DeviationOptions close;
   close.relative_tolerance = 0.02;
   for (std::uint64_t seed = 1; seed <= (kReduced ? 6 : 60); ++seed) {
-    Shrinking shrinking({"rough", seed % 2 == 0 ? grid(10, 0.05, seed) : terrain(10, seed)}, seed);
+    Shrinking shrinking({"rough", seed % 2 == 0 ? grid(10, 0.05, seed) : terrain(10, seed), true, 1}, seed);
     const MeasuredSurface original(shrinking.mesh());
     std::deque<LevelDeviation> all;
     for (const double tolerance : {0.0, 0.1})
