@@ -152,7 +152,7 @@ void run_all(std::vector<Job>& jobs, const std::string& name, const Mesh& mesh, 
                    job.threads);
       // The result is the same in every run, and for any number of threads.
       const bool is_first = run == 0 && (i == 0 || jobs[i - 1].simplifier != job.simplifier);
-      add_run(job, mesh, faces, is_first ? std::optional(options.samples) : std::nullopt);
+      add_run(job, mesh, faces, is_first && options.samples > 0 ? std::optional(options.samples) : std::nullopt);
       if (!is_first && i > 0 && jobs[i - 1].simplifier == job.simplifier) job.judgement = jobs[i - 1].judgement;
     }
   }
@@ -197,14 +197,15 @@ void print_rows(const std::vector<Job>& jobs, const std::string& name, double fa
       continue;
     }
     const double wall = median_of(job.seconds, &Seconds::wall);
+    const bool is_judged = job.judgement.faces > 0;
     const std::array<std::string, 8> cells = {text_of("%.3f s", wall),
                                               text_of("%.3f s", median_of(job.seconds, &Seconds::cpu)),
                                               text_of("%.2f", multiple_of(job, jobs)),
                                               text_of("%.3f M", faces / wall * 1e-6),
                                               text_of("%.0f", median(job.peak_bytes) / faces),
-                                              std::to_string(job.judgement.faces),
-                                              text_of("%.3g", job.judgement.mean),
-                                              text_of("%.3g", job.judgement.rms)};
+                                              is_judged ? std::to_string(job.judgement.faces) : "–",
+                                              is_judged ? text_of("%.3g", job.judgement.mean) : "–",
+                                              is_judged ? text_of("%.3g", job.judgement.rms) : "–"};
     for (const std::string& cell : cells) std::printf(" %s |", cell.c_str());
     std::puts("");
   }
@@ -326,7 +327,7 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--effort", options.effort, "lodestone's, 1 to 9")
       ->check(CLI::Range(lodestone::kLeastEffort, lodestone::kMostEffort));
-  app.add_option("--samples", options.samples, "that the referee takes of a surface, each way, at most");
+  app.add_option("--samples", options.samples, "that the referee takes of a surface, each way, at most; 0: no referee");
   CLI11_PARSE(app, argc, argv);
   return lodestone::bench::run(options);
 }
