@@ -140,14 +140,25 @@ void SideJobs::add(std::function<void()> job) {
   {
     const std::lock_guard lock(queue_->mutex);
     queue_->waiting.push_back(std::move(job));
-    if (queue_->is_worked_on) return;
+  }
+  call_for_work();
+}
+
+/// Who is called and finds the owner at work does not come back.
+void SideJobs::call_for_work() {
+  {
+    const std::lock_guard lock(queue_->mutex);
+    if (queue_->is_worked_on || queue_->waiting.empty()) return;
   }
   if (tbb::this_task_arena::max_concurrency() == 1) return queue_->work(0);
   check_memory();
   tbb::task_arena(tbb::task_arena::attach()).enqueue([queue = queue_] { queue->work(0); });
 }
 
-void SideJobs::wait(std::size_t most_left) { queue_->wait(most_left); }
+void SideJobs::wait(std::size_t most_left) {
+  queue_->wait(most_left);
+  call_for_work();
+}
 
 SideJobs::~SideJobs() {
   try {

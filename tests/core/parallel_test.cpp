@@ -144,6 +144,16 @@ TEST_CASE("an owner waits until so many side jobs are left, and its end until no
   }
 }
 
+TEST_CASE("side jobs that an owner leaves are done though it waits for them no more") {
+  with_threads(2, [] {
+    SideJobs jobs;
+    std::atomic<std::size_t> done{0};
+    for (std::size_t i = 0; i < 10; ++i) jobs.add([&] { ++done; });
+    jobs.wait(4);
+    while (done < 10) std::this_thread::yield();
+  });
+}
+
 TEST_CASE("one thread does side jobs when they are added") {
   with_threads(1, [] {
     SideJobs jobs;

@@ -41,6 +41,8 @@ class SideJobs {
   void wait(std::size_t most_left = 0);
 
  private:
+  void call_for_work();
+
   struct Queue;
   std::shared_ptr<Queue> queue_;
 };
