@@ -60,6 +60,8 @@ double bound_by_same_face(const Corners& c) {
   return same ? std::max({c[0].distance, c[1].distance, c[2].distance}) : kUnbounded;
 }
 
+Vec3 centre_of(const Corners& c) { return (c[0].point + c[1].point + c[2].point) * (1.0 / 3.0); }
+
 /// Where a difference that is `from` at one end and `towards`, of the other sign, at the other end vanishes.
 double zero_between(double from, double towards) {
   const double range = from - towards;
@@ -194,9 +196,7 @@ double SupremumSearch::bound_by_corners(const Corners& corners, const Goal& goal
 }
 
 /// A face near the middle of a part. Pre: all corners are near faces.
-Index SupremumSearch::face_facing(const Corners& c) const {
-  return to_.near((c[0].point + c[1].point + c[2].point) * (1.0 / 3.0), c[0].face).face;
-}
+Index SupremumSearch::face_facing(const Corners& c) const { return to_.near(centre_of(c), c[0].face).face; }
 
 double SupremumSearch::bound_by_face(const Corners& corners, Index face, const Goal& goal) const {
   PieceBound bound(corners, to_, goal.threshold());
@@ -316,8 +316,7 @@ void SupremumSearch::add_part(const Part& parent, const std::array<Index, 3>& co
 /// At the corners several faces may be equally near, and the one that covers the part need not be the one found: the
 /// face nearest to the centre is worth trying as well.
 Index SupremumSearch::face_at_centre(const Corners& c, Index from_face, Goal& goal) {
-  const Vec3 centre = (c[0].point + c[1].point + c[2].point) * (1.0 / 3.0);
-  return query(centre, c[0].face, from_face, goal).face;
+  return query(centre_of(c), c[0].face, from_face, goal).face;
 }
 
 /// Halves a part across its longest edge.

@@ -69,6 +69,7 @@ class Shrinking {
     for (LevelDeviation* deviation : told) deviation->add(change);
   }
 
+  /// What is left; and that as a mesh of all vertices.
   LevelDeviation::Level left() const { return {mesh_, connectivity_}; }
   Mesh level() const {
     std::vector<Index> corners;

@@ -10,7 +10,6 @@
 #include <lodestone/core/detail/text.h>
 #include <lodestone/core/detail/try.h>
 #include <lodestone/core/parallel.h>
-#include <lodestone/io/stream_format.h>
 #include <lodestone/io/stream_reader.h>
 #include <lodestone/lod/cursor.h>
 
