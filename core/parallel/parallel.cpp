@@ -13,6 +13,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 
 namespace lodestone {
 namespace {
@@ -90,8 +91,26 @@ void for_each_chunk(std::size_t count, std::size_t chunk_size,
   });
 }
 
-/// Worked on by one thread at a time.
+/// Worked on by one thread at a time: the owner, or one that it calls.
 struct SideJobs::Queue {
+  /// Has another thread come, unless one is at work or on its way.
+  void call() {
+    check_memory();
+    {
+      const std::lock_guard lock(mutex);
+      if (is_called || is_worked_on || waiting.empty()) return;
+      is_called = true;
+    }
+    // What is called has to come, if only to find nothing left: oneTBB frees no task that waits when the program ends.
+    called.run([this] {
+      {
+        const std::lock_guard lock(mutex);
+        is_called = false;
+      }
+      work(0);
+    });
+  }
+
   /// Does jobs until so many are left, unless another thread is on them.
   void work(std::size_t most_left) {
     std::unique_lock lock(mutex);
@@ -117,9 +136,8 @@ struct SideJobs::Queue {
   }
 
   std::mutex mutex;
-  std::condition_variable ended;              // a job, or the work on them
   std::deque<std::function<void()>> waiting;  // the first one may be on the way
-  bool is_worked_on = false;
+  tbb::task_group called;                     // one task at most
 
  private:
   void run(const std::function<void()>& job) {
@@ -131,10 +149,13 @@ struct SideJobs::Queue {
     }
   }
 
+  std::condition_variable ended;  // a job, or the work on them
+  bool is_called = false;         // and has not come yet
+  bool is_worked_on = false;
   std::exception_ptr failure;
 };
 
-SideJobs::SideJobs() : queue_(std::make_shared<Queue>()) {}
+SideJobs::SideJobs() : queue_(std::make_unique<Queue>()) {}
 
 void SideJobs::add(std::function<void()> job) {
   {
@@ -144,15 +165,11 @@ void SideJobs::add(std::function<void()> job) {
   call_for_work();
 }
 
-/// Who is called and finds the owner at work does not come back.
 void SideJobs::call_for_work() {
-  {
-    const std::lock_guard lock(queue_->mutex);
-    if (queue_->is_worked_on || queue_->waiting.empty()) return;
-  }
-  if (tbb::this_task_arena::max_concurrency() == 1) return queue_->work(0);
-  check_memory();
-  tbb::task_arena(tbb::task_arena::attach()).enqueue([queue = queue_] { queue->work(0); });
+  if (tbb::this_task_arena::max_concurrency() == 1)
+    queue_->work(0);
+  else
+    queue_->call();
 }
 
 void SideJobs::wait(std::size_t most_left) {
@@ -165,6 +182,7 @@ SideJobs::~SideJobs() {
     wait();
   } catch (...) {  // nobody asked
   }
+  queue_->called.wait();
 }
 
 }  // namespace lodestone

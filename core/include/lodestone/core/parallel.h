@@ -44,7 +44,7 @@ class SideJobs {
   void call_for_work();
 
   struct Queue;
-  std::shared_ptr<Queue> queue_;
+  std::unique_ptr<Queue> queue_;
 };
 
 }  // namespace lodestone
