@@ -30,11 +30,20 @@ LevelDeviation::Level::Level(const Mesh& original, const Connectivity& current) 
   mesh.corner_wedge.reserve(3 * current.face_count());
   slots.reserve(current.face_count());
   Compaction vertices(original.vertex_count());
+  std::vector<Index> numbers(current.face_slot_count(), kNoIndex);
   for (Index f = 0; f < current.face_slot_count(); ++f) {
     if (!current.has_face(f)) continue;
+    numbers[f] = static_cast<Index>(slots.size());
     slots.push_back(f);
     for (Index c = 3 * f; c < 3 * f + 3; ++c) mesh.corner_wedge.push_back(vertices.add(current.vertex(c)));
   }
+  opposite.reserve(mesh.corner_wedge.size());
+  for (const Index f : slots)
+    for (Index c = 3 * f; c < 3 * f + 3; ++c) {
+      const Index across = current.opposite(previous_corner(c));  // facing the edge that begins at c
+      const Index same = across == kNoIndex ? kNoIndex : next_corner(across);
+      opposite.push_back(same == kNoIndex ? kNoIndex : 3 * numbers[face_of_corner(same)] + same % 3);
+    }
   source = vertices.used();
   mesh.positions = pick_entries(original.positions, source);
   mesh.wedge_vertex.resize(source.size());
@@ -163,9 +172,8 @@ Deviation LevelDeviation::measure(const Level& level) {
   const std::vector<Index> numbers = numbers_of(level);
   carry(numbers);
   SurfaceBounds backward = place_vertices(level);
-  const std::vector<Index> level_opposite = opposite_corners(level.mesh);
-  TargetSurface level_surface(level.mesh, level_opposite);
-  PatchBound level_patch(level.mesh, level_opposite, kCloseFrom);
+  TargetSurface level_surface(level.mesh, level.opposite);
+  PatchBound level_patch(level.mesh, level.opposite, kCloseFrom);
   SupremumSearch forward_search(original_, level_surface, level_patch, forward_);
   SupremumSearch backward_search(level.mesh, surface_, patch_, backward);
   Goal goal = goal_of(options_, std::max(diagonal_, bounding_box(level.mesh).diagonal()), 0);

@@ -32,8 +32,9 @@ class LevelDeviation {
     Level(const Mesh& original, const Connectivity& current);
 
     Mesh mesh;
-    std::vector<Index> source;  ///< by vertex: the original's
-    std::vector<Index> slots;   ///< by face: its name
+    std::vector<Index> source;    ///< by vertex: the original's
+    std::vector<Index> slots;     ///< by face: its name
+    std::vector<Index> opposite;  ///< the mesh's opposite_corners, as they are known already
   };
 
   /// Takes into account what a removal did, or that a piece has vanished.

@@ -104,6 +104,18 @@ std::vector<NamedShape> shapes_of_at_most(std::size_t face_count) {
 
 }  // namespace
 
+TEST_CASE("a level's faces are beside those that their edges say") {
+  for (const NamedShape& shape : all_shapes()) {
+    INFO(shape.name);
+    Shrinking shrinking(shape);
+    if (shrinking.mesh().face_count() == 0) continue;
+    for (std::size_t step = 1; shrinking.shrink(step, {}); step *= 2) {
+      const LevelDeviation::Level level = shrinking.left();
+      CHECK(level.opposite == detail::opposite_corners(level.mesh));
+    }
+  }
+}
+
 TEST_CASE("each way, the maximum lies between its bounds as all pairs of faces have it, whatever was removed before") {
   for (const NamedShape& shape : shapes_of_at_most(kMostFaces)) {
     Shrinking shrinking(shape);
