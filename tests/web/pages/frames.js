@@ -1,9 +1,11 @@
-/** Looks at frames for so long; returns what `look` found at each. */
-export async function watchFrames(look, milliseconds) {
+import { pace } from './pace.js';
+
+/** Looks at frames that a context draws for so long; returns what `look` found at each. */
+export async function watchFrames(look, context, milliseconds) {
   const seen = [];
   for (const end = performance.now() + milliseconds; performance.now() < end; ) {
     seen.push(look());
-    await new Promise((resolve) => setTimeout(resolve, 5));
+    await pace(context, 5);
   }
   return seen;
 }

@@ -1,12 +1,12 @@
-/** Draws frames until nothing has changed for as many as `patience`. `updates()`: how often buffers were written. */
-export async function settle(drawFrame, updates, patience = 100) {
+import { pace } from './pace.js';
+
+/** Has a context draw frames until as many as `patience` have been like the one before, which `isSame` says of what `drawFrame` returns. */
+export async function settle(drawFrame, context, isSame, patience = 100) {
   let state = drawFrame();
-  let known = updates();
   for (let still = 0; still < patience; ) {
-    await new Promise((resolve) => setTimeout(resolve, 10));
+    await pace(context, 10);
     const next = drawFrame();
-    still = updates() === known && next.bytes === state.bytes ? still + 1 : 0;
-    known = updates();
+    still = isSame(next, state) ? still + 1 : 0;
     state = next;
   }
   return state;
