@@ -68,10 +68,15 @@ function withMemory(pages) {
   return bytes;
 }
 
-/** Loads worker.js here, with a module of so much memory; returns what opens a stream there, and the messages by stream. */
-async function startWorker(pages) {
+let workers = 0;
+
+/**
+ * Loads worker.js here, with a module of so much memory, which is there once `loaded` is; returns what opens a stream there, and the messages
+ * by stream.
+ */
+async function startWorker(pages, loaded = Promise.resolve()) {
   const fetchAsEver = globalThis.fetch;
-  globalThis.fetch = (url, ...more) => (String(url).endsWith('/lodestone.wasm') ? new Response(withMemory(pages)) : fetchAsEver(url, ...more));
+  globalThis.fetch = (url, ...more) => (String(url).endsWith('/lodestone.wasm') ? loaded.then(() => new Response(withMemory(pages))) : fetchAsEver(url, ...more));
   const messages = new Map();
   let changed = () => {};
   const self = {
@@ -82,8 +87,9 @@ async function startWorker(pages) {
     },
   };
   globalThis.self = self;
-  await import(join(options.package, 'lib', 'worker.js'));
+  await import(`${join(options.package, 'lib', 'worker.js')}?${++workers}`);
   return {
+    messages,
     send: (data) => self.onmessage({ data }),
     /** Resolves once a stream's messages are as wanted. */
     async until(id, isWanted) {
@@ -226,6 +232,26 @@ function checksOfMemory(large, small) {
         assert.equal((await worker.until(3, isWhole)).filter(({ type }) => type === 'error').length, 0);
         worker.send({ type: 'close', id: 3 });
         return 'two, then one';
+      } finally {
+        worker.close();
+        await server.close();
+      }
+    },
+    'what its streams are told while it loads the module holds': async () => {
+      const server = await serveSlowly(folder, {});
+      let release;
+      const worker = await startWorker(1024, new Promise((resolve) => (release = resolve)));
+      try {
+        for (const id of [1, 2]) worker.send({ type: 'open', id, url: `${server.address}/${basename(small)}`, options: {} });
+        worker.send({ type: 'close', id: 1 });
+        worker.send({ type: 'want', id: 2, deviation: Infinity });
+        release();
+        const { level } = (await worker.until(2, (messages) => messages.at(-1)?.settled === Infinity)).at(-1);
+        worker.send({ type: 'close', id: 2 });
+        assert.equal(level.position, 0);
+        assert.equal(worker.messages.get(1), undefined);
+        assert.equal(server.asked.length, 1);
+        return 'a close and a want';
       } finally {
         worker.close();
         await server.close();

@@ -46,31 +46,9 @@ function connectWorker(url, options, receive) {
 
 /** Has the session here, in this thread. */
 function connectHere(url, options, receive) {
-  let session;
-  let closed = false;
-  let wanted;
-  (async () => {
-    try {
-      const runtime = await load(options.module);
-      if (closed) return;
-      session = new Session(runtime, url, options, receive);
-      if (wanted !== undefined) session.want(wanted);
-      await session.run();
-    } catch (error) {
-      receive({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
-    }
-  })();
-  return {
-    want: (deviation) => {
-      wanted = deviation;
-      session?.want(deviation);
-    },
-    acknowledge: () => session?.acknowledge(),
-    close: () => {
-      closed = true;
-      session?.close();
-    },
-  };
+  const session = new Session(load(options.module), url, options, receive);
+  session.run();
+  return session;
 }
 
 /**

@@ -27,9 +27,10 @@ class Signal {
 }
 
 export class Session {
+  #runtime; // a promise of it
   #options;
   #source;
-  #stream;
+  #stream; // undefined while the runtime is loaded
   #cursor;
   #deviation;
   #changed = new Signal();
@@ -42,12 +43,15 @@ export class Session {
   #ended = false; // no more bytes
   #told = {}; // of where it stands, with the last update; nothing before the base mesh is shown
 
-  /** `post(message, transferred)` gets the messages; after each update it waits for `acknowledge`. */
+  /**
+   * `runtime` is one, or a promise of one: what is asked of the session while that is loaded holds from its first step on. `post(message,
+   * transferred)` gets the messages; after each update it waits for `acknowledge`.
+   */
   constructor(runtime, url, options, post) {
+    this.#runtime = runtime;
     this.#options = options;
     this.#deviation = options.deviation ?? 0;
     this.#source = new Source(url, options.fetch ?? ((...request) => fetch(...request)));
-    this.#stream = runtime.createStream({ mostBytes: options.mostBytes });
     this.#post = post;
   }
 
@@ -70,8 +74,8 @@ export class Session {
 
   /** Ends it with an error that another session of the runtime has had: nothing of that can be called any more. */
   lose({ code, message }) {
-    if (this.#closed) return;
     this.#lost = true;
+    if (this.#closed) return;
     this.close();
     this.#post({ type: 'error', code, message });
   }
@@ -79,6 +83,8 @@ export class Session {
   /** Works until it is closed, or fails with a message of type "error". */
   async run() {
     try {
+      const runtime = await this.#runtime;
+      if (!this.#closed) this.#stream = runtime.createStream({ mostBytes: this.#options.mostBytes });
       while (!this.#closed) {
         if ((await this.#move()) || (await this.#tell())) continue;
         if (this.#isEnough()) await this.#changed.wait();
@@ -93,7 +99,7 @@ export class Session {
     }
     if (this.#lost) return; // nothing can be called any more
     this.#cursor?.destroy();
-    this.#stream.destroy();
+    this.#stream?.destroy();
   }
 
   /**
