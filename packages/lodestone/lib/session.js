@@ -2,29 +2,10 @@
 // It runs in a worker, or where there is none in the page.
 import { Source } from './source.js';
 import { leastSoFar } from './view.js';
+import { Wakeup } from './wakeup.js';
 
 const MOST_RECORDS = 20_000; // in an update: about a megabyte, which a page takes in a few milliseconds
 const MOST_BYTES = 1 << 18; // in a request, so that what is wanted may change
-
-/** What a promise waits for until somebody calls `wake`, which may be before. */
-class Signal {
-  #woken = false;
-  #wake;
-
-  async wait() {
-    if (!this.#woken) {
-      await new Promise((resolve) => {
-        this.#wake = resolve;
-      });
-    }
-    this.#woken = false;
-  }
-
-  wake() {
-    this.#woken = true;
-    this.#wake?.();
-  }
-}
 
 export class Session {
   #runtime; // a promise of it
@@ -33,8 +14,8 @@ export class Session {
   #stream; // undefined while the runtime is loaded
   #cursor;
   #deviation;
-  #changed = new Signal();
-  #acknowledged = new Signal();
+  #changed = new Wakeup();
+  #acknowledged = new Wakeup();
   #post;
   #closed = false;
   #lost = false; // the runtime
@@ -51,7 +32,7 @@ export class Session {
     this.#runtime = runtime;
     this.#options = options;
     this.#deviation = options.deviation ?? 0;
-    this.#source = new Source(url, options.fetch ?? ((...request) => fetch(...request)));
+    this.#source = new Source(url, options);
     this.#post = post;
   }
 
