@@ -177,14 +177,14 @@ function checksOf(site, page, { name, model, path, beside }, prefix) {
     'shows more the more bytes there are': async () => {
       const line = await serveSlowly(dirname(beside), { share: 0, piece: 1000 });
       await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
-      await page.ask(() => window.settle(5));
+      await page.ask(() => window.settle(50));
       const covered = await page.ask(() => window.keepPicture());
       await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
       const seen = [];
       for (const percent of [5, 25, 100]) {
         line.change({ share: percent / 100 });
         await page.ask(() => window.setPixelError(0));
-        const { drawn } = percent === 100 ? await page.ask(() => window.finish()) : await page.ask(() => window.settle(40));
+        const { drawn } = percent === 100 ? await page.ask(() => window.finish()) : await page.ask(() => window.settle(400));
         await picture(`${percent}-percent`);
         const [likeness, holes] = await page.ask(async () => [await window.likeKept(), await window.holes()]);
         seen.push({ percent, drawn, likeness, holes });

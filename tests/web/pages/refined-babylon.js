@@ -162,7 +162,7 @@ window.finish = async () => {
   window.setPixelError(0);
   window.drawFrame();
   await Promise.all(refinement.meshes.map((mesh) => mesh.complete));
-  return window.settle(10);
+  return window.settle(100);
 };
 
 const isSame = (a, b) => a.updates === b.updates && a.bytes === b.bytes;

@@ -121,7 +121,7 @@ window.arrive = async () => {
 /** Waits for it and for what is drawn of it. */
 window.finish = async () => {
   await window.arrive();
-  return window.settle(10);
+  return window.settle(100);
 };
 
 /** The picture, with where it is none of the background. */

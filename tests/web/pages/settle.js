@@ -1,12 +1,19 @@
 import { pace } from './pace.js';
 
-/** Has a context draw frames until as many as `patience` have been like the one before, which `isSame` says of what `drawFrame` returns. */
-export async function settle(drawFrame, context, isSame, patience = 100) {
+const LEAST_FRAMES = 10;
+
+/**
+ * Has a context draw frames until for so many milliseconds, and some frames, each has been like the one before, which `isSame` says of what
+ * `drawFrame` returns.
+ */
+export async function settle(drawFrame, context, isSame, patience = 1000) {
   let state = drawFrame();
-  for (let still = 0; still < patience; ) {
+  let since = performance.now();
+  for (let still = 0; still < LEAST_FRAMES || performance.now() - since < patience; ) {
     await pace(context, 10);
     const next = drawFrame();
     still = isSame(next, state) ? still + 1 : 0;
+    if (still === 0) since = performance.now();
     state = next;
   }
   return state;
