@@ -162,17 +162,20 @@ function checksOf(site, page, { name, model, path, beside }, prefix) {
     },
     'asks for no more once it is closed': async () => {
       const line = await serveSlowly(dirname(beside), { share: 0 });
-      await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
-      await page.ask(() => {
-        window.setPixelError(0);
-        window.drawFrame();
-      });
-      await until(() => line.underWay > 0, 'asked for');
-      const { underWay } = line;
-      await page.ask(() => window.closeFile());
-      await until(() => line.underWay === 0, 'given up');
-      await line.close();
-      return `${underWay} requests without an answer`;
+      try {
+        await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
+        await page.ask(() => {
+          window.setPixelError(0);
+          window.drawFrame();
+        });
+        await until(() => line.underWay > 0, 'asked for');
+        const { underWay } = line;
+        await page.ask(() => window.closeFile());
+        await until(() => line.underWay === 0, 'given up');
+        return `${underWay} requests without an answer`;
+      } finally {
+        await line.close();
+      }
     },
     'shows more the more bytes there are': async () => {
       const line = await serveSlowly(dirname(beside), { share: 0, piece: 1000 });
