@@ -336,6 +336,20 @@ const checksOfSessions = {
     assert.deepEqual(members.map(({ chunksReady, ended }) => [chunksReady, ended]), [[2, true], [5, true]]);
     return '2 and 5 of 5 chunks';
   },
+  'an answer is read to its end while nobody asks for its bytes': async () => {
+    let left = 10_000;
+    const pull = async (controller) => {
+      await new Promise(setImmediate);
+      controller.enqueue(new Uint8Array(50));
+      if ((left -= 50) === 0) controller.close();
+    };
+    const member = memberOf([8, 4, 2, 1, 0], async () => new Response(new ReadableStream({ pull }, { highWaterMark: 0 })));
+    for (let i = 0; i < 2000 && left > 0; ++i) await new Promise(setImmediate);
+    member.close();
+    assert.equal(left, 0);
+    assert.equal(member.chunksReady, 1);
+    return '10,000 bytes, of which one chunk is decoded';
+  },
   'no more is fetched than what a level before the last needs': async () => {
     const asked = [];
     const deviations = [8, 2, 6, 4, 2, 1, 0];

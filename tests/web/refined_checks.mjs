@@ -8,7 +8,7 @@ import { openPage } from './browser.mjs';
 import { readDocument, trianglesOfScene } from './glb.mjs';
 import { makeCrowd, makeMixedTube, makeTube } from './made.mjs';
 import { serveSlowly } from './slow_server.mjs';
-import { Log, openSite, readOptions, repository, skip } from './suite.mjs';
+import { Log, openSite, readOptions, repository, skip, until } from './suite.mjs';
 
 const leastLikeness = 0.98; // of 1: what differs is rounded to the stream's grids
 const slideTime = 400; // milliseconds
@@ -160,17 +160,34 @@ function checksOf(site, page, { name, model, path, beside }, prefix) {
       await page.ask(() => window.closeFile());
       return 'two poses';
     },
+    'asks for no more once it is closed': async () => {
+      const line = await serveSlowly(dirname(beside), { share: 0 });
+      try {
+        await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
+        await page.ask(() => {
+          window.setPixelError(0);
+          window.drawFrame();
+        });
+        await until(() => line.underWay > 0, 'asked for');
+        const { underWay } = line;
+        await page.ask(() => window.closeFile());
+        await until(() => line.underWay === 0, 'given up');
+        return `${underWay} requests without an answer`;
+      } finally {
+        await line.close();
+      }
+    },
     'shows more the more bytes there are': async () => {
       const line = await serveSlowly(dirname(beside), { share: 0, piece: 1000 });
       await page.ask((url) => window.openFile(url, 'draco', false), site.url(model));
-      await page.ask(() => window.settle(5));
+      await page.ask(() => window.settle(50));
       const covered = await page.ask(() => window.keepPicture());
       await page.ask((url) => window.openFile(url, 'draco', true), `${line.address}/${basename(beside)}`);
       const seen = [];
       for (const percent of [5, 25, 100]) {
         line.change({ share: percent / 100 });
         await page.ask(() => window.setPixelError(0));
-        const { drawn } = percent === 100 ? await page.ask(() => window.finish()) : await page.ask(() => window.settle(40));
+        const { drawn } = percent === 100 ? await page.ask(() => window.finish()) : await page.ask(() => window.settle(400));
         await picture(`${percent}-percent`);
         const [likeness, holes] = await page.ask(async () => [await window.likeKept(), await window.holes()]);
         seen.push({ percent, drawn, likeness, holes });

@@ -4,6 +4,7 @@ import { EventEmitter } from 'node:events';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { join, normalize, sep } from 'node:path';
+import { setImmediate as nextTurn, setTimeout as sleep } from 'node:timers/promises';
 
 /**
  * Starts it. `behaviour` may be changed at any time: ranges 'yes' | 'no' | 'wrong' | 'first', which is the first half whatever
@@ -13,14 +14,22 @@ import { join, normalize, sep } from 'node:path';
  */
 export async function serveSlowly(folder, behaviour) {
   const asked = [];
+  let underWay = 0;
   const waiting = new Set();
   const answered = new EventEmitter();
   let lineFree = 0; // when what was sent last is through
-  const sent = (length) => {
+  /**
+   * Waits until a piece is through that could begin at `begin`, and returns when that was due: the next piece begins there, so that a line is
+   * no slower where timers are late on a busy machine.
+   */
+  const sent = async (length, begin) => {
     const { rate = Infinity, line = Infinity } = behaviour;
-    const now = performance.now();
-    lineFree = Math.max(lineFree, now) + (1000 * length) / line;
-    return new Promise((resolve) => setTimeout(resolve, Math.max((1000 * length) / rate, lineFree - now)));
+    if (rate === Infinity && line === Infinity) return sleep(1).then(() => performance.now());
+    lineFree = Math.max(lineFree, begin) + (1000 * length) / line;
+    const through = Math.max(lineFree, begin + (1000 * length) / rate);
+    const left = through - performance.now();
+    await (left > 0 ? sleep(left) : nextTurn());
+    return through;
   };
   const limitOf = (path, bytes) =>
     Math.min(behaviour.limit ?? Infinity, path.endsWith('.lods') && behaviour.share < 1 ? Math.ceil(behaviour.share * bytes.length) : Infinity);
@@ -46,25 +55,37 @@ export async function serveSlowly(folder, behaviour) {
       ...(match && { 'content-range': `bytes ${first}-${end - 1}/${bytes.length}` }),
     });
     if (behaviour.swap && asked.length % 2 === 1)
-      await Promise.race([new Promise((resolve) => answered.once('answer', resolve)), new Promise((resolve) => setTimeout(resolve, 200))]);
-    if (behaviour.delay) await new Promise((resolve) => setTimeout(resolve, behaviour.delay));
+      await Promise.race([new Promise((resolve) => answered.once('answer', resolve)), sleep(200)]);
+    let through = performance.now() + (behaviour.delay ?? 0); // what was sent last, or could have been
+    if (behaviour.delay) await sleep(behaviour.delay);
     const { drop = Infinity } = behaviour;
     for (let at = first; at < end && !response.destroyed; ) {
-      while (at >= limitOf(path, bytes) && !response.destroyed) await Promise.race([moved(), new Promise((resolve) => response.once('close', resolve))]);
+      while (at >= limitOf(path, bytes) && !response.destroyed) {
+        await Promise.race([moved(), new Promise((resolve) => response.once('close', resolve))]);
+        through = performance.now();
+      }
       const length = Math.min(behaviour.piece ?? 1 << 16, end - at, limitOf(path, bytes) - at);
       if (at + length - first > drop) return void response.destroy();
       response.write(bytes.subarray(at, at + length));
       at += length;
-      await sent(length);
+      through = await sent(length, through);
     }
     response.end();
     answered.emit('answer');
   }
 
-  const server = createServer((request, response) => respond(request, response).catch(() => response.destroy()));
+  const server = createServer(async (request, response) => {
+    ++underWay;
+    await respond(request, response).catch(() => response.destroy());
+    --underWay;
+  });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   return {
     asked,
+    /** How many answers have not been sent to their end, to who still wants them. */
+    get underWay() {
+      return underWay;
+    },
     address: `http://127.0.0.1:${server.address().port}`,
     /** Changes the behaviour. */
     change(changes) {

@@ -8,7 +8,7 @@ import { existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { serveSlowly } from './slow_server.mjs';
-import { Log, openSite, readOptions, repository, skip } from './suite.mjs';
+import { Log, openSite, readOptions, repository, skip, until } from './suite.mjs';
 
 const MOST_MODULE_BYTES = 120_000; // compressed
 
@@ -37,6 +37,11 @@ function buildStreams() {
     execFileSync(options.program, ['build', model, '-o', path, '-q', '--stream-coding', coding], { stdio: ['ignore', 'ignore', 'ignore'] });
     return [path];
   });
+}
+
+/** Fails where a promise takes long. */
+function soon(promise, what) {
+  return Promise.race([promise, new Promise((_, reject) => setTimeout(reject, 20_000, new Error(`not ${what}`)).unref())]);
 }
 
 function addToSum(sum, array) {
@@ -68,10 +73,15 @@ function withMemory(pages) {
   return bytes;
 }
 
-/** Loads worker.js here, with a module of so much memory; returns what opens a stream there, and the messages by stream. */
-async function startWorker(pages) {
+let workers = 0;
+
+/**
+ * Loads worker.js here, with a module of so much memory, which is there once `loaded` is; returns what opens a stream there, and the messages
+ * by stream.
+ */
+async function startWorker(pages, loaded = Promise.resolve()) {
   const fetchAsEver = globalThis.fetch;
-  globalThis.fetch = (url, ...more) => (String(url).endsWith('/lodestone.wasm') ? new Response(withMemory(pages)) : fetchAsEver(url, ...more));
+  globalThis.fetch = (url, ...more) => (String(url).endsWith('/lodestone.wasm') ? loaded.then(() => new Response(withMemory(pages))) : fetchAsEver(url, ...more));
   const messages = new Map();
   let changed = () => {};
   const self = {
@@ -82,8 +92,9 @@ async function startWorker(pages) {
     },
   };
   globalThis.self = self;
-  await import(join(options.package, 'lib', 'worker.js'));
+  await import(`${join(options.package, 'lib', 'worker.js')}?${++workers}`);
   return {
+    messages,
     send: (data) => self.onmessage({ data }),
     /** Resolves once a stream's messages are as wanted. */
     async until(id, isWanted) {
@@ -231,6 +242,26 @@ function checksOfMemory(large, small) {
         await server.close();
       }
     },
+    'what its streams are told while it loads the module holds': async () => {
+      const server = await serveSlowly(folder, {});
+      let release;
+      const worker = await startWorker(1024, new Promise((resolve) => (release = resolve)));
+      try {
+        for (const id of [1, 2]) worker.send({ type: 'open', id, url: `${server.address}/${basename(small)}`, options: {} });
+        worker.send({ type: 'close', id: 1 });
+        worker.send({ type: 'want', id: 2, deviation: Infinity });
+        release();
+        const { level } = (await worker.until(2, (messages) => messages.at(-1)?.settled === Infinity)).at(-1);
+        worker.send({ type: 'close', id: 2 });
+        assert.equal(level.position, 0);
+        assert.equal(worker.messages.get(1), undefined);
+        assert.equal(server.asked.length, 1);
+        return 'a close and a want';
+      } finally {
+        worker.close();
+        await server.close();
+      }
+    },
   };
 }
 
@@ -331,6 +362,55 @@ function checksOfStream(path) {
         await assert.rejects(follow(url, { fetch: async () => (++asked, new Response(half, range)) }), { code: 'NETWORK', message: /other ranges/ });
         assert.equal(asked, 3);
         return `${server.asked.length} requests in ${time.toFixed(0)} ms`;
+      }),
+    'requests that bring nothing are given up': async () => {
+      for (const limit of [0, Math.floor(bytes.length / 2)]) {
+        await served({ ranges: 'no', limit }, async (url, server) => {
+          await assert.rejects(soon(follow(url, { idleTimeout: 300 }), 'given up'), { code: 'NETWORK', message: /nothing comes for 0.3 s/ });
+          assert.ok(server.asked.length >= 3 && server.asked.length <= 5, `${server.asked.length} requests`);
+          await until(() => server.underWay === 0, 'given up');
+        });
+      }
+      return 'unanswered, and half of the bytes';
+    },
+    'and made again': () =>
+      served({ limit: Math.floor(bytes.length / 2) }, async (url, server) => {
+        until(() => server.asked.at(-1)?.end > bytes.length / 2, 'asked for').then(() => setTimeout(() => server.change({ limit: Infinity }), 1000));
+        const { sum } = await follow(url, { idleTimeout: 700 });
+        assert.equal(sum, whole);
+        return `${server.asked.length} requests`;
+      }),
+    'who asks for nothing is not out of time': () =>
+      served({ ranges: 'no', limit: Math.floor(bytes.length / 2) }, async (url, server) => {
+        const stream = await LodestoneStream.open(url, { worker: false, module: wasm, deviation: Infinity, idleTimeout: 500 });
+        await stream.next();
+        await new Promise((resolve) => setTimeout(resolve, 1200));
+        server.change({ limit: Infinity });
+        stream.want(0);
+        for (let update = await stream.next(); !(stream.complete && update.level.deviation === 0); ) update = await stream.next();
+        stream.close();
+        assert.equal(server.asked.length, 1);
+        return 'one request';
+      }),
+    'a signal gives it up': () =>
+      served({ limit: 0 }, async (url, server) => {
+        const open = (signal) => LodestoneStream.open(url, { worker: false, module: wasm, signal });
+        const first = new AbortController();
+        const opening = open(first.signal);
+        opening.catch(() => {});
+        await until(() => server.underWay === 1, 'asked for');
+        first.abort(new Error('enough'));
+        await assert.rejects(soon(opening, 'given up'), { message: 'enough' });
+        await until(() => server.underWay === 0, 'given up');
+        await assert.rejects(soon(open(first.signal), 'given up'), { message: 'enough' });
+        assert.equal(server.asked.length, 1);
+        server.change({ limit: Infinity });
+        const second = new AbortController();
+        const stream = await open(second.signal);
+        second.abort();
+        while (await stream.next());
+        assert.ok(stream.ended && !stream.complete);
+        return 'before it is open, and after that';
       }),
     'no more than what is wanted is fetched': () =>
       served({}, async (url, server) => {
@@ -448,6 +528,47 @@ function checksOfPage(site, path) {
   };
 }
 
+/** What is asked of a stream in the worker before it is open. */
+function checksOfOpening(site, path) {
+  const held = async (job) => {
+    const { openPage } = await import('./browser.mjs');
+    const server = await serveSlowly(folder, { limit: 0 });
+    const page = await openPage(site.browser, `${site.address}/pages/stream.html`);
+    try {
+      return await job(page, server, `${server.address}/${basename(path)}`);
+    } finally {
+      await page.page.close();
+      await server.close();
+    }
+  };
+  return {
+    'a signal gives it up': () =>
+      held(async (page, server, url) => {
+        await page.ask((address) => {
+          window.given = new AbortController();
+          window.opening = window.openStream(address, { signal: window.given.signal }).catch(({ message }) => message);
+        }, url);
+        await until(() => server.underWay === 1, 'asked for');
+        const aborted = page.ask(() => {
+          window.given.abort(new Error('enough'));
+          return window.opening;
+        });
+        const reason = await soon(aborted, 'given up');
+        assert.equal(reason, 'enough');
+        await until(() => server.underWay === 0, 'given up');
+        return reason;
+      }),
+    'and so does time': () =>
+      held(async (page, server, url) => {
+        const failed = page.ask((address) => window.openStream(address, { idleTimeout: 300 }).catch(({ message }) => message), url);
+        const reason = await soon(failed, 'given up');
+        assert.match(String(reason), /nothing comes for 0.3 s/);
+        assert.equal(server.asked.length, 3);
+        return `${server.asked.length} requests`;
+      }),
+  };
+}
+
 /** Has vertices slide from level to level. */
 function checksOfSlides(site, path) {
   const native = execFileSync(options.sums, [path], { encoding: 'utf8' }).trim().split('\n').map((line) => line.split(' ').map(Number));
@@ -522,6 +643,7 @@ const [small, large] = ['spot_triangulated.lods', 'stanford-bunny.lods'].map((na
 if (small && large) await log.run('memory', checksOfMemory(large, small));
 for (const path of streams) await log.run(basename(path), checksOfStream(path));
 const site = await openSite({ ...options, more: { package: options.package } });
+await log.run(`${basename(streams[0])} in a worker`, checksOfOpening(site, streams[0]));
 for (const path of streams) await log.run(`${basename(path)} in three.js`, checksOfPage(site, path));
 for (const path of streams.filter((path) => path !== large)) await log.run(`${basename(path)} with slides`, checksOfSlides(site, path));
 await site.close();

@@ -69,6 +69,12 @@ export async function openSite({ output, models, assets = output, more = {} }) {
   };
 }
 
+/** Waits until something is so. */
+export async function until(isSo, what) {
+  for (const end = Date.now() + 20_000; !isSo(); await new Promise((resolve) => setTimeout(resolve, 20)))
+    if (Date.now() > end) throw new Error(`not ${what}`);
+}
+
 /** A log that counts how checks end. */
 export class Log {
   passed = 0;

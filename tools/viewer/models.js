@@ -72,6 +72,7 @@ export class Model {
   #heatMaterial;
   #heats = [];
   #close = () => {};
+  #abort = new AbortController(); // when it is disposed of
 
   constructor(name) {
     this.name = name;
@@ -93,7 +94,7 @@ export class Model {
 
   async #openStream(url, budget) {
     const material = new MeshStandardMaterial({ color: 0xb9c2cc, roughness: 0.7, metalness: 0 });
-    const mesh = await LodestoneMesh.load(url, { budget, material, onUpdate: () => this.changed() });
+    const mesh = await LodestoneMesh.load(url, { budget, material, signal: this.#abort.signal, onUpdate: () => this.changed() });
     material.flatShading = !mesh.stream.attributes.some(({ name }) => name === 'NORMAL');
     mesh.complete.catch((error) => this.#fail(error));
     const size = new Vector3(...mesh.stream.high).distanceTo(new Vector3(...mesh.stream.low)) || 1;
@@ -225,6 +226,7 @@ export class Model {
   }
 
   dispose() {
+    this.#abort.abort();
     this.#close();
     for (const heat of this.#heats) heat.dispose();
     this.#heatMaterial?.forEach((material) => material.dispose());

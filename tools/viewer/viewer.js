@@ -84,6 +84,7 @@ async function open(url, name, resolve) {
     showAll();
     wishedAt = performance.now();
   } catch (error) {
+    if (!models.includes(model)) return; // it was removed, which is why
     model.error = error;
     say(`${name}: ${error.message}`);
   }

@@ -53,7 +53,7 @@ class GeometryBuffers {
  * refine themselves as they are rendered: see `Refinement` in gltf.d.ts. Options: `pixelError`, how many pixels a level's
  * error may cover; `budget`, a DetailBudget that says so in its place; `morph`, milliseconds in which vertices slide from level
  * to level, 0: none; `onUpdate`, called when there is something new to draw;
- * `worker` and `fetch` as LodestoneStream.open has.
+ * `worker`, `idleTimeout` and `fetch` as LodestoneStream.open has.
  */
 export class LodestonePlugin {
   #parser;

@@ -74,6 +74,12 @@ export interface StreamOptions {
   mostBytes?: number;
   /** Read and decode in a worker. Default true where there are workers. */
   worker?: boolean;
+  /** Gives it up: before it is open, `open` rejects with the signal's reason; afterwards the stream is closed. */
+  signal?: AbortSignal;
+  /** Milliseconds after which a request that brings nothing is given up. It is made again, and what fails three times in a row fails the stream with
+   * NETWORK. One that has not been answered yet is not given up while other streams' bring something: a browser may keep it waiting for
+   * a connection. Default 30,000; 0 or Infinity: no limit. */
+  idleTimeout?: number;
   /** Without a worker: the WebAssembly module, where it is not the one beside this file. */
   module?: WebAssembly.Module | ArrayBuffer | ArrayBufferView | Response;
   /** Without a worker: what fetches. */
@@ -87,7 +93,7 @@ export interface StreamOptions {
  */
 export class LodestoneStream implements AsyncIterable<Update> {
   /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. Rejects with a LodestoneError,
-   * or a RangeError where an option is out of its range. */
+   * a RangeError where an option is out of its range, or `signal`'s reason. */
   static open(url: string | URL, options?: StreamOptions): Promise<LodestoneStream>;
 
   readonly chunks: Chunk[];
@@ -100,7 +106,7 @@ export class LodestoneStream implements AsyncIterable<Update> {
   readonly high: [number, number, number];
   readonly bytes: number;
   readonly chunksReady: number;
-  /** Also where it has failed. */
+  /** Also where it has failed, or is closed. */
   readonly ended: boolean;
   readonly settled: number | undefined;
   /** Whether all of it has been decoded. */

@@ -31,8 +31,8 @@ function connectWorker(url, options, receive) {
   const id = ++shared.last;
   const worker = sharedWorker();
   const send = (message) => worker.postMessage({ id, ...message });
-  const { deviation, slack, normals, morph, mostBytes } = options; // what can be sent
-  send({ type: 'open', url, options: { deviation, slack, normals, morph, mostBytes } });
+  const { deviation, slack, normals, morph, mostBytes, idleTimeout } = options; // what can be sent
+  send({ type: 'open', url, options: { deviation, slack, normals, morph, mostBytes, idleTimeout } });
   shared.streams.set(id, receive);
   return {
     want: (deviation) => send({ type: 'want', deviation }),
@@ -46,31 +46,9 @@ function connectWorker(url, options, receive) {
 
 /** Has the session here, in this thread. */
 function connectHere(url, options, receive) {
-  let session;
-  let closed = false;
-  let wanted;
-  (async () => {
-    try {
-      const runtime = await load(options.module);
-      if (closed) return;
-      session = new Session(runtime, url, options, receive);
-      if (wanted !== undefined) session.want(wanted);
-      await session.run();
-    } catch (error) {
-      receive({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
-    }
-  })();
-  return {
-    want: (deviation) => {
-      wanted = deviation;
-      session?.want(deviation);
-    },
-    acknowledge: () => session?.acknowledge(),
-    close: () => {
-      closed = true;
-      session?.close();
-    },
-  };
+  const session = new Session(load(options.module), url, options, receive);
+  session.run();
+  return session;
 }
 
 /**
@@ -86,20 +64,28 @@ export class LodestoneStream {
   #closed = false;
   #owes = false; // an acknowledgement
   #opened;
+  #over = new AbortController(); // when it is closed or has failed
   ended = false; // no more bytes come
 
   /** Opens a stream; resolves when it can be drawn, which is after its first kilobytes. */
   static async open(url, options = {}) {
     checkRange('deviation', options.deviation ?? 0, 0, Infinity);
     checkRange('mostBytes', options.mostBytes ?? 1, 1, Number.MAX_SAFE_INTEGER);
+    checkRange('idleTimeout', options.idleTimeout ?? 0, 0, Infinity);
+    options.signal?.throwIfAborted();
     const stream = new LodestoneStream();
     const base = globalThis.location?.href;
     await stream.#start(String(new URL(url, base)), options);
     return stream;
   }
 
-  #start(url, { worker = typeof Worker !== 'undefined', ...options }) {
+  #start(url, { worker = typeof Worker !== 'undefined', signal, ...options }) {
     return new Promise((resolve, reject) => {
+      const abort = () => {
+        reject(signal.reason); // of no effect once it is open
+        this.close();
+      };
+      signal?.addEventListener('abort', abort, { signal: this.#over.signal });
       this.#opened = { resolve, reject };
       this.#session = (worker ? connectWorker : connectHere)(url, options, (message) => this.#receive(message));
     });
@@ -118,6 +104,7 @@ export class LodestoneStream {
     } else if (message.type === 'error') {
       this.#error = new LodestoneError(message.code, message.message);
       this.ended = true;
+      this.#over.abort();
       this.#opened.reject(this.#error);
     }
     this.#wake();
@@ -141,6 +128,8 @@ export class LodestoneStream {
 
   close() {
     this.#closed = true;
+    this.ended = true;
+    this.#over.abort();
     this.#session.close();
     this.#wake();
   }

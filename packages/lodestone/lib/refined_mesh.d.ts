@@ -11,6 +11,8 @@ export interface RefinementOptions {
   onUpdate?: (mesh: RefinedMesh) => void;
   /** Whether to decode in a worker. Default: where there are workers. */
   worker?: boolean;
+  /** Milliseconds after which a request that brings nothing is given up: see `StreamOptions` in index.d.ts. Default 30,000; 0 or Infinity: no limit. */
+  idleTimeout?: number;
   /** In place of the page's own; without a worker only. */
   fetch?: typeof fetch;
 }

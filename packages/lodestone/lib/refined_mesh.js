@@ -55,6 +55,7 @@ export class RefinedMesh {
   #needed = 0; // when it was last wanted as fine as it is
   #url; // of what is in memory
   #closed = false;
+  #abort = new AbortController(); // when it is closed
   #resolve;
   #reject;
   geometries = []; // that show it: whoever makes it says them
@@ -149,9 +150,8 @@ export class RefinedMesh {
   }
 
   async #open() {
-    const { worker, fetch, budget, morph } = this.#options;
-    const more = { ...(budget && { slack: 1 }), ...(morph > 0 && { morph: true }) };
-    const options = { deviation: this.#wanted, ...(worker !== undefined && { worker }), ...(fetch && { fetch }), ...more };
+    const { worker, fetch, idleTimeout, budget, morph } = this.#options;
+    const options = { worker, fetch, idleTimeout, deviation: this.#wanted, slack: budget && 1, morph: morph > 0, signal: this.#abort.signal };
     this.#url = await this.#source();
     const stream = await LodestoneStream.open(this.#url, options);
     this.#stream = stream;
@@ -202,7 +202,7 @@ export class RefinedMesh {
   close() {
     if (this.#closed) return;
     this.#closed = true;
-    this.#stream?.close();
+    this.#abort.abort();
     this.#buffers?.finish?.();
     this.#options.budget?.remove(this);
     this.#resolve();

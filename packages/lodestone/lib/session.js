@@ -2,38 +2,20 @@
 // It runs in a worker, or where there is none in the page.
 import { Source } from './source.js';
 import { leastSoFar } from './view.js';
+import { Wakeup } from './wakeup.js';
 
 const MOST_RECORDS = 20_000; // in an update: about a megabyte, which a page takes in a few milliseconds
 const MOST_BYTES = 1 << 18; // in a request, so that what is wanted may change
 
-/** What a promise waits for until somebody calls `wake`, which may be before. */
-class Signal {
-  #woken = false;
-  #wake;
-
-  async wait() {
-    if (!this.#woken) {
-      await new Promise((resolve) => {
-        this.#wake = resolve;
-      });
-    }
-    this.#woken = false;
-  }
-
-  wake() {
-    this.#woken = true;
-    this.#wake?.();
-  }
-}
-
 export class Session {
+  #runtime; // a promise of it
   #options;
   #source;
-  #stream;
+  #stream; // undefined while the runtime is loaded
   #cursor;
   #deviation;
-  #changed = new Signal();
-  #acknowledged = new Signal();
+  #changed = new Wakeup();
+  #acknowledged = new Wakeup();
   #post;
   #closed = false;
   #lost = false; // the runtime
@@ -42,12 +24,15 @@ export class Session {
   #ended = false; // no more bytes
   #told = {}; // of where it stands, with the last update; nothing before the base mesh is shown
 
-  /** `post(message, transferred)` gets the messages; after each update it waits for `acknowledge`. */
+  /**
+   * `runtime` is one, or a promise of one: what is asked of the session while that is loaded holds from its first step on. `post(message,
+   * transferred)` gets the messages; after each update it waits for `acknowledge`.
+   */
   constructor(runtime, url, options, post) {
+    this.#runtime = runtime;
     this.#options = options;
     this.#deviation = options.deviation ?? 0;
-    this.#source = new Source(url, options.fetch ?? ((...request) => fetch(...request)));
-    this.#stream = runtime.createStream({ mostBytes: options.mostBytes });
+    this.#source = new Source(url, options);
     this.#post = post;
   }
 
@@ -70,8 +55,8 @@ export class Session {
 
   /** Ends it with an error that another session of the runtime has had: nothing of that can be called any more. */
   lose({ code, message }) {
-    if (this.#closed) return;
     this.#lost = true;
+    if (this.#closed) return;
     this.close();
     this.#post({ type: 'error', code, message });
   }
@@ -79,6 +64,8 @@ export class Session {
   /** Works until it is closed, or fails with a message of type "error". */
   async run() {
     try {
+      const runtime = await this.#runtime;
+      if (!this.#closed) this.#stream = runtime.createStream({ mostBytes: this.#options.mostBytes });
       while (!this.#closed) {
         if ((await this.#move()) || (await this.#tell())) continue;
         if (this.#isEnough()) await this.#changed.wait();
@@ -93,7 +80,7 @@ export class Session {
     }
     if (this.#lost) return; // nothing can be called any more
     this.#cursor?.destroy();
-    this.#stream.destroy();
+    this.#stream?.destroy();
   }
 
   /**

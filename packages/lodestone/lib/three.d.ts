@@ -25,7 +25,7 @@ export class LodestoneMesh extends Group {
   static load(url: string | URL, options?: MeshOptions): Promise<LodestoneMesh>;
 
   pixelError: number;
-  /** Rejects with what the stream fails with after it was opened; resolves when the object is disposed of. */
+  /** Rejects with what the stream fails with after it was opened; resolves when the object is disposed of, or `signal` aborted. */
   readonly complete: Promise<void>;
   readonly level: Level;
   readonly stream: LodestoneStream;

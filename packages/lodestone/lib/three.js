@@ -27,10 +27,12 @@ export class LodestoneMesh extends Group {
     checkRange('morph', morph, 0, Number.MAX_SAFE_INTEGER);
     const more = { ...(budget && { slack: 1 }), ...(morph > 0 && { morph: true }) };
     const stream = await LodestoneStream.open(url, { deviation, ...more, ...options });
+    const first = await stream.next();
+    options.signal?.throwIfAborted();
     const mesh = new LodestoneMesh(stream, material, { morph, onStep: () => onUpdate?.(mesh) });
     mesh.pixelError = pixelError;
     mesh.#wanted = deviation;
-    mesh.#apply(await mesh.#stream.next());
+    mesh.#apply(first);
     mesh.complete = mesh.#follow(onUpdate);
     mesh.complete.catch(() => {}); // who wants to know awaits it
     mesh.#budget = budget;

@@ -24,7 +24,10 @@ async function compile(source) {
   if (source instanceof WebAssembly.Module) return source;
   if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(source);
   const response = source ?? (await fetch(new URL('lodestone.wasm', import.meta.url)));
-  if (!response.ok) throw new LodestoneError('NETWORK', `${response.url}: ${response.status} ${response.statusText}`);
+  if (!response.ok) {
+    response.body?.cancel().catch(() => {}); // its connection is for others
+    throw new LodestoneError('NETWORK', `${response.url}: ${response.status} ${response.statusText}`);
+  }
   return WebAssembly.compile(await response.arrayBuffer());
 }
 

@@ -3,7 +3,7 @@ import { Session } from './session.js';
 import { load } from './wasm.js';
 
 let shared; // a promise of the runtime
-const sessions = new Map(); // with the runtime that each is of
+const sessions = new Map(); // with the promise of the runtime that each is of
 
 /** One runtime for all streams, and another where that has failed. */
 function sharedRuntime() {
@@ -24,20 +24,15 @@ function abandon(runtime, error) {
   }
 }
 
-async function open({ id, url, options }) {
+function open({ id, url, options }) {
   const of = sharedRuntime();
   const post = (message, transferred = []) => {
     self.postMessage({ id, ...message }, transferred);
     if (message.code === 'LODESTONE_OUT_OF_MEMORY') abandon(of, message);
   };
-  try {
-    const session = new Session(await of, url, options, post);
-    sessions.set(id, { session, of });
-    await session.run();
-  } catch (error) {
-    post({ type: 'error', code: error.code ?? 'UNKNOWN', message: error.message });
-  }
-  sessions.delete(id);
+  const session = new Session(of, url, options, post);
+  sessions.set(id, { session, of });
+  session.run().finally(() => sessions.delete(id));
 }
 
 self.onmessage = ({ data }) => {

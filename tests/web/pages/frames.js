@@ -1,10 +1,15 @@
-/** Looks at frames for so long; returns what `look` found at each. */
-export async function watchFrames(look, milliseconds) {
+import { pace } from './pace.js';
+
+const LONGEST = 50; // milliseconds between two looks: what slides is seen on the way also where drawing is slow
+
+/** Looks at frames that a context draws for so long; returns what `look` found at each, once all are drawn. */
+export async function watchFrames(look, context, milliseconds) {
   const seen = [];
   for (const end = performance.now() + milliseconds; performance.now() < end; ) {
     seen.push(look());
-    await new Promise((resolve) => setTimeout(resolve, 5));
+    await Promise.race([pace(context, 5), new Promise((resolve) => setTimeout(resolve, LONGEST))]);
   }
+  await pace(context, 5);
   return seen;
 }
 

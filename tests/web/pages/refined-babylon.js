@@ -32,6 +32,7 @@ DracoDecoder.DefaultConfiguration = {
 };
 
 const engine = new Engine(document.getElementById('canvas'), true, { preserveDrawingBuffer: true });
+const context = engine._gl;
 const scene = new Scene(engine);
 scene.clearColor = new Color4(0.44, 0.53, 0.66, 1);
 const light = new DirectionalLight('sun', new Vector3(-1, -2, -3), scene);
@@ -127,6 +128,7 @@ window.drawFrame = () => {
     bytes: meshes.reduce((sum, mesh) => sum + mesh.bytes, 0),
     refined: meshes.filter((mesh) => mesh.level).length,
     worst: Math.max(0, ...meshes.map((mesh) => mesh.level?.deviation ?? 0)),
+    updates,
   };
 };
 
@@ -148,7 +150,7 @@ const positions = () => loaded.meshes.filter(({ geometry }) => geometry).map(({ 
 
 /** Draws frames for so long; returns of each how many triangles it had, and a number that changes as vertices slide. */
 window.frames = (milliseconds) =>
-  watchFrames(() => ({ drawn: window.drawFrame().drawn, sum: sumOfPositions(positions()) }), milliseconds);
+  watchFrames(() => ({ drawn: window.drawFrame().drawn, sum: sumOfPositions(positions()) }), context, milliseconds);
 
 /** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
 window.hit = () => {
@@ -160,9 +162,10 @@ window.finish = async () => {
   window.setPixelError(0);
   window.drawFrame();
   await Promise.all(refinement.meshes.map((mesh) => mesh.complete));
-  return window.settle(10);
+  return window.settle(100);
 };
 
-window.settle = (patience) => settle(window.drawFrame, () => updates, patience);
+const isSame = (a, b) => a.updates === b.updates && a.bytes === b.bytes;
+window.settle = (patience) => settle(window.drawFrame, context, isSame, patience);
 
 window.ready = true;

@@ -4,6 +4,7 @@ import { DetailBudget } from 'lodestone/budget';
 import { LodestonePlugin } from 'lodestone/gltf';
 import { sumOfPositions, watchFrames } from './frames.js';
 import { KeptPicture } from './kept_picture.js';
+import { pace } from './pace.js';
 import { makeLoader } from './scene.js';
 import { settle } from './settle.js';
 
@@ -11,6 +12,7 @@ const SIZE = 512;
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 renderer.setSize(SIZE, SIZE);
 document.body.append(renderer.domElement);
+const context = renderer.getContext();
 
 const scene = new THREE.Scene();
 scene.background = new THREE.Color(0x7088a8);
@@ -100,22 +102,30 @@ window.drawFrame = () => {
     bytes: meshes.reduce((sum, mesh) => sum + mesh.bytes, 0),
     refined: meshes.filter((mesh) => mesh.level).length,
     worst: Math.max(0, ...meshes.map((mesh) => mesh.level?.deviation ?? 0)),
+    updates,
   };
 };
 
-window.settle = (patience) => settle(window.drawFrame, () => updates, patience);
+window.pace = (milliseconds, turned) => pace(context, milliseconds, turned);
+
+const isSame = (a, b) => a.updates === b.updates && a.bytes === b.bytes;
+window.settle = (patience) => settle(window.drawFrame, context, isSame, patience);
 
 /** Waits for all of all streams: with a pixel error of 0 all is wanted. */
-window.finish = async () => {
+window.arrive = async () => {
   window.setPixelError(0);
   window.drawFrame();
   await Promise.all(gltf.userData.lodestone.meshes.map((mesh) => mesh.complete));
-  return window.settle(10);
+};
+
+/** Waits for it and for what is drawn of it. */
+window.finish = async () => {
+  await window.arrive();
+  return window.settle(100);
 };
 
 /** The picture, with where it is none of the background. */
 function picture() {
-  const context = renderer.getContext();
   const rgba = new Uint8Array(4 * SIZE * SIZE);
   renderer.render(scene, camera);
   context.readPixels(0, 0, SIZE, SIZE, context.RGBA, context.UNSIGNED_BYTE, rgba);
@@ -137,7 +147,7 @@ function positions() {
 
 /** Draws frames for so long; returns of each how many triangles it had, and a number that changes as vertices slide. */
 window.frames = (milliseconds) =>
-  watchFrames(() => ({ drawn: window.drawFrame().drawn, sum: sumOfPositions(positions()) }), milliseconds);
+  watchFrames(() => ({ drawn: window.drawFrame().drawn, sum: sumOfPositions(positions()) }), context, milliseconds);
 
 /** What the first mesh is hit at by a ray from the camera through the middle of the picture; null where it misses. */
 window.hit = () => {

@@ -1,12 +1,19 @@
-/** Draws frames until nothing has changed for as many as `patience`. `updates()`: how often buffers were written. */
-export async function settle(drawFrame, updates, patience = 100) {
+import { pace } from './pace.js';
+
+const LEAST_FRAMES = 10;
+
+/**
+ * Has a context draw frames until for so many milliseconds, and some frames, each has been like the one before, which `isSame` says of what
+ * `drawFrame` returns.
+ */
+export async function settle(drawFrame, context, isSame, patience = 1000) {
   let state = drawFrame();
-  let known = updates();
-  for (let still = 0; still < patience; ) {
-    await new Promise((resolve) => setTimeout(resolve, 10));
+  let since = performance.now();
+  for (let still = 0; still < LEAST_FRAMES || performance.now() - since < patience; ) {
+    await pace(context, 10);
     const next = drawFrame();
-    still = updates() === known && next.bytes === state.bytes ? still + 1 : 0;
-    known = updates();
+    still = isSame(next, state) ? still + 1 : 0;
+    if (still === 0) since = performance.now();
     state = next;
   }
   return state;

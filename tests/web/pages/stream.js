@@ -2,11 +2,13 @@
 import * as THREE from 'three';
 import { LodestoneMesh } from 'lodestone/three';
 import { sumOfPositions, watchFrames } from './frames.js';
+import { settle } from './settle.js';
 
 const SIZE = 640;
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 renderer.setSize(SIZE, SIZE);
 document.body.append(renderer.domElement);
+const context = renderer.getContext();
 
 const scene = new THREE.Scene();
 scene.background = new THREE.Color(0x202830);
@@ -64,16 +66,9 @@ window.drawFrame = () => {
 };
 
 /** Draws frames until nothing has changed for a while, and where `whole` is said until all has arrived. */
-window.settle = async (whole = false) => {
-  let state = window.drawFrame();
-  for (let still = 0; still < 40; ) {
-    await new Promise((resolve) => setTimeout(resolve, 10));
-    const next = window.drawFrame();
-    const same = next.position === state.position && next.bytes === state.bytes;
-    still = same && (next.complete || !whole) ? still + 1 : 0;
-    state = next;
-  }
-  return state;
+window.settle = (whole = false) => {
+  const isSame = (a, b) => a.position === b.position && a.bytes === b.bytes && (a.complete || !whole);
+  return settle(window.drawFrame, context, isSame, 400);
 };
 
 /** Draws frames for so long; returns of each the level, how many faces were drawn, and a number that changes as vertices slide. */
@@ -81,7 +76,7 @@ window.frames = (milliseconds) =>
   watchFrames(() => {
     const { position, faceCount, drawn } = window.drawFrame();
     return { position, faceCount, drawn, sum: sumOfPositions([mesh.children[0].geometry.attributes.position.array]) };
-  }, milliseconds);
+  }, context, milliseconds);
 
 window.watchTasks = () => {
   worst = 0;
