@@ -95,10 +95,10 @@ void for_each_chunk(std::size_t count, std::size_t chunk_size,
 struct SideJobs::Queue {
   /// Has another thread come, unless one is at work or on its way.
   void call() {
-    check_memory();
     {
       const std::lock_guard lock(mutex);
       if (is_called || is_worked_on || waiting.empty()) return;
+      check_memory();
       is_called = true;
     }
     // What is called has to come, if only to find nothing left: oneTBB frees no task that waits when the program ends.

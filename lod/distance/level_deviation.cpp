@@ -24,37 +24,36 @@ constexpr Index kNever = kNoIndex - 1;  // of a bound of which it is not known w
 
 float bound_kept(double bound) { return round_up(bound * kRoundingSlack); }
 
+/// By the names of faces, of which there are so many: the level's face; kNoIndex: none.
+std::vector<Index> numbers_of(std::span<const Index> slots, std::size_t slot_count) {
+  std::vector<Index> numbers(slot_count, kNoIndex);
+  for (Index f = 0; f < slots.size(); ++f) numbers[slots[f]] = f;
+  return numbers;
+}
+
 }  // namespace
 
 LevelDeviation::Level::Level(const Mesh& original, const Connectivity& current) {
   mesh.corner_wedge.reserve(3 * current.face_count());
   slots.reserve(current.face_count());
   Compaction vertices(original.vertex_count());
-  std::vector<Index> numbers(current.face_slot_count(), kNoIndex);
   for (Index f = 0; f < current.face_slot_count(); ++f) {
     if (!current.has_face(f)) continue;
-    numbers[f] = static_cast<Index>(slots.size());
     slots.push_back(f);
     for (Index c = 3 * f; c < 3 * f + 3; ++c) mesh.corner_wedge.push_back(vertices.add(current.vertex(c)));
   }
+  const std::vector<Index> numbers = numbers_of(slots, current.face_slot_count());
   opposite.reserve(mesh.corner_wedge.size());
   for (const Index f : slots)
     for (Index c = 3 * f; c < 3 * f + 3; ++c) {
       const Index across = current.opposite(previous_corner(c));  // facing the edge that begins at c
-      const Index same = across == kNoIndex ? kNoIndex : next_corner(across);
-      opposite.push_back(same == kNoIndex ? kNoIndex : 3 * numbers[face_of_corner(same)] + same % 3);
+      const bool is_border = across == kNoIndex;
+      opposite.push_back(is_border ? kNoIndex : 3 * numbers[face_of_corner(across)] + next_corner(across) % 3);
     }
   source = vertices.used();
   mesh.positions = pick_entries(original.positions, source);
   mesh.wedge_vertex.resize(source.size());
   std::iota(mesh.wedge_vertex.begin(), mesh.wedge_vertex.end(), Index{0});
-}
-
-/// By name: the face; kNoIndex: none.
-std::vector<Index> LevelDeviation::numbers_of(const Level& level) const {
-  std::vector<Index> numbers(original_.face_count(), kNoIndex);
-  for (Index f = 0; f < level.slots.size(); ++f) numbers[level.slots[f]] = f;
-  return numbers;
 }
 
 LevelDeviation::LevelDeviation(const Mesh& original, const DeviationOptions& options)
@@ -169,7 +168,7 @@ double LevelDeviation::bound() const {
 }
 
 Deviation LevelDeviation::measure(const Level& level) {
-  const std::vector<Index> numbers = numbers_of(level);
+  const std::vector<Index> numbers = numbers_of(level.slots, original_.face_count());
   carry(numbers);
   SurfaceBounds backward = place_vertices(level);
   TargetSurface level_surface(level.mesh, level.opposite);

@@ -47,7 +47,6 @@ class LevelDeviation {
   Deviation measure(const Level& level);
 
  private:
-  std::vector<Index> numbers_of(const Level& level) const;
   void carry(std::span<const Index> numbers);
   void carry_vertices(std::span<const Index> numbers, std::span<const FaceHistory::Fate> fates);
   void carry_faces(std::span<const Index> faces, std::span<const FaceHistory::Fate> fates);
