@@ -2,6 +2,7 @@
 import { accessSync, constants } from 'node:fs';
 import { delimiter, join } from 'node:path';
 import { chromium } from 'playwright-core';
+import { withinTime } from './suite.mjs';
 
 const NAMES = ['chromium', 'chromium-browser', 'google-chrome'];
 
@@ -15,7 +16,7 @@ const ARGUMENTS = [
   '--no-first-run',
 ];
 
-const patience = 360_000; // milliseconds; a busy machine draws slowly in software
+const patience = 360_000; // milliseconds; a busy machine draws slowly in software, but a viewer may wait for what never comes
 
 function isExecutable(path) {
   try {
@@ -38,15 +39,6 @@ export async function launchBrowser(executablePath) {
   return chromium.launch({ executablePath, args: [...ARGUMENTS, ...(asRoot ? ['--no-sandbox'] : [])] });
 }
 
-/** A viewer that waits for what never comes would wait for ever. */
-function withinTime(answer) {
-  let timer;
-  const late = new Promise((_, reject) => {
-    timer = setTimeout(() => reject(new Error(`no answer after ${patience / 1000} s`)), patience);
-  });
-  return Promise.race([answer, late]).finally(() => clearTimeout(timer));
-}
-
 /** Opens a page. Its `ask` evaluates in it and fails on any error that the page has reported since the last time. */
 export async function openPage(browser, url) {
   const page = await browser.newPage({ viewport: { width: 640, height: 640 } });
@@ -64,7 +56,7 @@ export async function openPage(browser, url) {
     page,
     failOnProblems,
     ask: async (job, argument) => {
-      const answer = await withinTime(page.evaluate(job, argument)).catch((error) => {
+      const answer = await withinTime(page.evaluate(job, argument), patience).catch((error) => {
         problems.push(error.message.split('\n')[0]);
       });
       failOnProblems();

@@ -8,9 +8,10 @@ import { existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { serveSlowly } from './slow_server.mjs';
-import { Log, openSite, readOptions, repository, skip, until } from './suite.mjs';
+import { Log, openSite, readOptions, repository, skip, until, withinTime } from './suite.mjs';
 
 const MOST_MODULE_BYTES = 120_000; // compressed
+const PATIENCE = 20_000; // milliseconds, with what is to be given up at once
 
 const options = readOptions();
 if (!existsSync(join(options.package, 'lib', 'lodestone.wasm'))) {
@@ -37,11 +38,6 @@ function buildStreams() {
     execFileSync(options.program, ['build', model, '-o', path, '-q', '--stream-coding', coding], { stdio: ['ignore', 'ignore', 'ignore'] });
     return [path];
   });
-}
-
-/** Fails where a promise takes long. */
-function soon(promise, what) {
-  return Promise.race([promise, new Promise((_, reject) => setTimeout(reject, 20_000, new Error(`not ${what}`)).unref())]);
 }
 
 function addToSum(sum, array) {
@@ -366,7 +362,7 @@ function checksOfStream(path) {
     'requests that bring nothing are given up': async () => {
       for (const limit of [0, Math.floor(bytes.length / 2)]) {
         await served({ ranges: 'no', limit }, async (url, server) => {
-          await assert.rejects(soon(follow(url, { idleTimeout: 300 }), 'given up'), { code: 'NETWORK', message: /nothing comes for 0.3 s/ });
+          await assert.rejects(withinTime(follow(url, { idleTimeout: 300 }), PATIENCE), { code: 'NETWORK', message: /nothing comes for 0.3 s/ });
           assert.ok(server.asked.length >= 3 && server.asked.length <= 5, `${server.asked.length} requests`);
           await until(() => server.underWay === 0, 'given up');
         });
@@ -400,9 +396,9 @@ function checksOfStream(path) {
         opening.catch(() => {});
         await until(() => server.underWay === 1, 'asked for');
         first.abort(new Error('enough'));
-        await assert.rejects(soon(opening, 'given up'), { message: 'enough' });
+        await assert.rejects(withinTime(opening, PATIENCE), { message: 'enough' });
         await until(() => server.underWay === 0, 'given up');
-        await assert.rejects(soon(open(first.signal), 'given up'), { message: 'enough' });
+        await assert.rejects(withinTime(open(first.signal), PATIENCE), { message: 'enough' });
         assert.equal(server.asked.length, 1);
         server.change({ limit: Infinity });
         const second = new AbortController();
@@ -553,7 +549,7 @@ function checksOfOpening(site, path) {
           window.given.abort(new Error('enough'));
           return window.opening;
         });
-        const reason = await soon(aborted, 'given up');
+        const reason = await withinTime(aborted, PATIENCE);
         assert.equal(reason, 'enough');
         await until(() => server.underWay === 0, 'given up');
         return reason;
@@ -561,7 +557,7 @@ function checksOfOpening(site, path) {
     'and so does time': () =>
       held(async (page, server, url) => {
         const failed = page.ask((address) => window.openStream(address, { idleTimeout: 300 }).catch(({ message }) => message), url);
-        const reason = await soon(failed, 'given up');
+        const reason = await withinTime(failed, PATIENCE);
         assert.match(String(reason), /nothing comes for 0.3 s/);
         assert.equal(server.asked.length, 3);
         return `${server.asked.length} requests`;

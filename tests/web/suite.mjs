@@ -69,6 +69,15 @@ export async function openSite({ output, models, assets = output, more = {} }) {
   };
 }
 
+/** Fails where an answer takes longer. */
+export function withinTime(answer, milliseconds) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`no answer after ${milliseconds / 1000} s`)), milliseconds);
+  });
+  return Promise.race([answer, late]).finally(() => clearTimeout(timer));
+}
+
 /** Waits until something is so. */
 export async function until(isSo, what) {
   for (const end = Date.now() + 20_000; !isSo(); await new Promise((resolve) => setTimeout(resolve, 20)))

@@ -165,7 +165,6 @@ window.finish = async () => {
   return window.settle(100);
 };
 
-const isSame = (a, b) => a.updates === b.updates && a.bytes === b.bytes;
-window.settle = (patience) => settle(window.drawFrame, context, isSame, patience);
+window.settle = (patience) => settle(window.drawFrame, context, patience);
 
 window.ready = true;

@@ -108,8 +108,7 @@ window.drawFrame = () => {
 
 window.pace = (milliseconds, turned) => pace(context, milliseconds, turned);
 
-const isSame = (a, b) => a.updates === b.updates && a.bytes === b.bytes;
-window.settle = (patience) => settle(window.drawFrame, context, isSame, patience);
+window.settle = (patience) => settle(window.drawFrame, context, patience);
 
 /** Waits for all of all streams: with a pixel error of 0 all is wanted. */
 window.arrive = async () => {

@@ -68,7 +68,7 @@ window.drawFrame = () => {
 /** Draws frames until nothing has changed for a while, and where `whole` is said until all has arrived. */
 window.settle = (whole = false) => {
   const isSame = (a, b) => a.position === b.position && a.bytes === b.bytes && (a.complete || !whole);
-  return settle(window.drawFrame, context, isSame, 400);
+  return settle(window.drawFrame, context, 400, isSame);
 };
 
 /** Draws frames for so long; returns of each the level, how many faces were drawn, and a number that changes as vertices slide. */
